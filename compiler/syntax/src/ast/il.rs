@@ -1,0 +1,69 @@
+//! Instruction List.
+
+use super::{Arg, Expr, Name};
+use plcc_diag::Span;
+
+/// An IL body, or what stands inside deferred parentheses.
+#[derive(Debug, Clone)]
+pub struct IlBody {
+    /// In order.
+    pub lines: Vec<IlLine>,
+    /// The whole body.
+    pub span: Span,
+}
+
+/// One instruction with its label; a label may stand alone.
+#[derive(Debug, Clone)]
+pub struct IlLine {
+    /// `name:`.
+    pub label: Option<Name>,
+    /// The instruction.
+    pub inst: Option<IlInst>,
+    /// The whole line.
+    pub span: Span,
+}
+
+/// The forms of an instruction. Operators are names as written: `hir` decides them by a table.
+#[derive(Debug, Clone)]
+pub enum IlInst {
+    /// `LD x`, `NOT`, `LIMIT 0, 10`: an operator or a function name with operands.
+    Simple {
+        /// The operator.
+        op: Name,
+        /// Its operands; operators take at most one.
+        operands: Vec<Expr>,
+    },
+    /// `AND( x` ... `)`.
+    Deferred {
+        /// The operator.
+        op: Name,
+        /// The operand on the same line, if any.
+        first: Option<Expr>,
+        /// The lines up to the closing parenthesis.
+        body: IlBody,
+        /// The closing parenthesis.
+        close: Span,
+    },
+    /// `CAL t(IN := a, Q => b)`, `CALC fb`, `JMP label` are `Simple`; with an argument list they are here.
+    Call {
+        /// `CAL`, `CALC`, `CALCN`.
+        op: Name,
+        /// The instance or action.
+        callee: Expr,
+        /// In written order.
+        args: Vec<Arg>,
+        /// From `(` to `)`.
+        parens: Span,
+    },
+    /// `LIMIT(MN := 0, IN := x, MX := 10)`: a function in formal form.
+    Function {
+        /// Its name.
+        name: Name,
+        /// In written order.
+        args: Vec<Arg>,
+        /// From `(` to `)`.
+        parens: Span,
+    },
+    /// What could not be parsed; reported already.
+    Error,
+}

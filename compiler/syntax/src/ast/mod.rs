@@ -1,0 +1,60 @@
+//! The syntax tree of the text notations. It says what was written and where; it knows no types and resolves no names.
+
+pub mod config;
+pub mod decl;
+pub mod expr;
+pub mod il;
+pub mod sfc;
+pub mod st;
+
+pub use config::*;
+pub use decl::*;
+pub use expr::*;
+pub use il::*;
+pub use sfc::*;
+pub use st::*;
+
+use plcc_diag::Span;
+use smol_str::SmolStr;
+
+/// An identifier as written; its folding is `hir::collect`'s business.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Name {
+    /// As written.
+    pub text: SmolStr,
+    /// Where.
+    pub span: Span,
+}
+
+/// A pragma `{...}`; the text is what stands between the braces.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pragma {
+    /// Between the braces, untrimmed.
+    pub text: SmolStr,
+    /// With the braces.
+    pub span: Span,
+}
+
+/// What one source file holds, in the order of the text.
+#[derive(Debug, Clone, Default)]
+pub struct File {
+    /// POUs, types, globals, configurations.
+    pub items: Vec<Item>,
+    /// All pragmas of the file, in order; they may stand between any two tokens.
+    pub pragmas: Vec<Pragma>,
+}
+
+/// A top-level declaration.
+#[derive(Debug, Clone)]
+pub enum Item {
+    /// PROGRAM, FUNCTION_BLOCK, FUNCTION.
+    Pou(Pou),
+    /// TYPE ... END_TYPE.
+    Types(Vec<TypeDecl>),
+    /// VAR_GLOBAL (or VAR_CONFIG, VAR_ACCESS) outside of any configuration.
+    Globals(VarSection),
+    /// CONFIGURATION.
+    Config(Configuration),
+    /// An ACTION that stands outside its POU (`ACTION Pou.Name`), a CODESYS habit.
+    Action(Action),
+}

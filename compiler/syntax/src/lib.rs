@@ -1,0 +1,3 @@
+//! Text to syntax tree. It knows no types and resolves no names.
+
+pub mod ast;

@@ -1,0 +1,19 @@
+//! Bodies of standard functions that are too big for a formula. Each is an `extern "C"` function (for native code) and an
+//! evaluator over register values (for constants and the interpreter), from one definition.
+
+use crate::prim::Repr;
+
+/// A pure function on scalars with a native symbol.
+#[derive(Debug)]
+pub struct RtFn {
+    /// The symbol that native code calls.
+    pub symbol: &'static str,
+    /// Representations of the parameters.
+    pub params: &'static [Repr],
+    /// Representation of the result.
+    pub result: Repr,
+    /// Its meaning on register values.
+    pub eval: fn(&[u64]) -> u64,
+    /// Its address in this process, for the JIT.
+    pub address: fn() -> *const u8,
+}
