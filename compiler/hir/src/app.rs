@@ -1,0 +1,58 @@
+//! What is to run: resources, tasks, program instances (from a CONFIGURATION, or one PROGRAM without).
+
+use crate::body::{Expr, Place};
+use crate::defs::{PouId, VarId};
+use plcc_diag::Span;
+use smol_str::SmolStr;
+
+/// The application.
+#[derive(Debug, Clone, Default)]
+pub struct Application {
+    /// Of the CONFIGURATION; empty without one.
+    pub name: SmolStr,
+    /// At least one.
+    pub resources: Vec<Resource>,
+}
+
+/// A resource.
+#[derive(Debug, Clone, Default)]
+pub struct Resource {
+    /// Empty without CONFIGURATION.
+    pub name: SmolStr,
+    /// In order of declaration. The last one may be the unnamed task of programs without a task.
+    pub tasks: Vec<Task>,
+    /// In order of declaration.
+    pub programs: Vec<Program>,
+}
+
+/// A task.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// Its name; empty for that of programs without a task, which runs last in every base tick (semantics.md \[C1\]).
+    pub name: SmolStr,
+    /// Period in nanoseconds; `None`: every base tick.
+    pub interval_ns: Option<i64>,
+    /// Runs on its rising edge.
+    pub single: Option<Place>,
+    /// 0 is the highest.
+    pub priority: u32,
+    /// Longest execution in nanoseconds of real time.
+    pub watchdog_ns: i64,
+}
+
+/// A program instance.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// Its name; that of the PROGRAM without CONFIGURATION.
+    pub name: SmolStr,
+    /// The PROGRAM.
+    pub pou: PouId,
+    /// Index into `tasks`.
+    pub task: usize,
+    /// Copied into inputs before each execution.
+    pub inputs: Vec<(VarId, Expr)>,
+    /// Copied from outputs after each execution.
+    pub outputs: Vec<(VarId, Place)>,
+    /// Where.
+    pub span: Span,
+}

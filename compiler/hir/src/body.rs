@@ -1,0 +1,254 @@
+//! The one body form: typed, resolved statements. All notations end here; nothing after it knows which it was.
+
+use crate::defs::{PouId, VarId};
+use crate::types::TypeId;
+use plcc_diag::Span;
+use plcc_stdlib::elem::Elem;
+use plcc_stdlib::funcs::StdFn;
+use plcc_stdlib::ops::Op;
+
+index_vec::define_index_type! {
+    /// A temporary of a body (IL's current result); lives for one call.
+    pub struct TempId = u32;
+}
+index_vec::define_index_type! {
+    /// A jump target of a body.
+    pub struct LabelId = u32;
+}
+
+/// A checked body.
+#[derive(Debug, Clone, Default)]
+pub struct Body {
+    /// In order.
+    pub stmts: Vec<Stmt>,
+    /// Types of the temporaries.
+    pub temps: index_vec::IndexVec<TempId, TypeId>,
+    /// How many labels there are.
+    pub labels: u32,
+}
+
+/// A statement with its place.
+#[derive(Debug, Clone)]
+pub struct Stmt {
+    /// What it is.
+    pub kind: StmtKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// The forms of a statement.
+#[derive(Debug, Clone)]
+pub enum StmtKind {
+    /// `target := value`; both of the same type after conversion (strings may differ in capacity).
+    Assign {
+        /// Where to.
+        target: Place,
+        /// The value.
+        value: Expr,
+    },
+    /// A call for its effect; a function's result is dropped.
+    Call(Box<Call>),
+    /// An expression for its effect (a standard function called as a statement).
+    Eval(Expr),
+    /// Conditions are BOOL.
+    If {
+        /// IF and ELSIF.
+        arms: Vec<(Expr, Vec<Stmt>)>,
+        /// ELSE.
+        otherwise: Vec<Stmt>,
+    },
+    /// The selector is an integer, bit string or enumeration; labels are values of its type and do not overlap.
+    Case {
+        /// What decides.
+        selector: Expr,
+        /// In order.
+        arms: Vec<CaseArm>,
+        /// ELSE.
+        otherwise: Vec<Stmt>,
+    },
+    /// Counts as semantics.md \[S2\] says: all bounds evaluated once, hidden trip count.
+    For {
+        /// The control variable, an integer.
+        var: Place,
+        /// First value, of the variable's type.
+        from: Expr,
+        /// Last value, of the variable's type.
+        to: Expr,
+        /// Step, of the variable's type (a signed constant where it can be): `None` is 1. For an unsigned variable a
+        /// negative constant step has the signed type of the same width.
+        by: Option<Expr>,
+        /// The loop.
+        body: Vec<Stmt>,
+    },
+    /// WHILE.
+    While(Expr, Vec<Stmt>),
+    /// REPEAT ... UNTIL.
+    Repeat(Vec<Stmt>, Expr),
+    /// Leaves the innermost loop.
+    Exit,
+    /// Goes to the next pass of the innermost loop.
+    Continue,
+    /// Leaves the POU.
+    Return,
+    /// A jump target.
+    Label(LabelId),
+    /// A jump, if the condition holds; it may go backwards, then it is a loop.
+    Jump(LabelId, Option<Expr>),
+}
+
+/// An arm of a CASE.
+#[derive(Debug, Clone)]
+pub struct CaseArm {
+    /// Values from..to, both inclusive, as mathematical integers of the selector's type.
+    pub labels: Vec<(i128, i128)>,
+    /// Its statements.
+    pub body: Vec<Stmt>,
+}
+
+/// A typed expression.
+#[derive(Debug, Clone)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Its type.
+    pub ty: TypeId,
+    /// Where.
+    pub span: Span,
+}
+
+/// The forms of an expression. Conversions are explicit: operands have exactly the type that an operation takes.
+#[derive(Debug, Clone)]
+pub enum ExprKind {
+    /// Register value of an elementary type, enumeration, subrange or NULL (0).
+    Const(u64),
+    /// A STRING constant, Latin-1.
+    String(Vec<u8>),
+    /// A WSTRING constant.
+    WString(Vec<u16>),
+    /// The value of a variable; of an aggregate too.
+    Read(Place),
+    /// An operator; `elem` is the type of its operands as `stdlib::ops` counts it.
+    Op(Op, Elem, Vec<Expr>),
+    /// `a AND_THEN b`.
+    AndThen(Box<Expr>, Box<Expr>),
+    /// `a OR_ELSE b`.
+    OrElse(Box<Expr>, Box<Expr>),
+    /// A conversion between elementary types (`stdlib::convert`): enumerations and subranges as their base.
+    Convert(Elem, Elem, Box<Expr>),
+    /// The same bits under another type: enumeration and its base, alias, subrange to base.
+    Retype(Box<Expr>),
+    /// Faults unless low <= value <= high: assignment to a subrange; the text names the variable.
+    RangeCheck {
+        /// The value, an integer.
+        value: Box<Expr>,
+        /// Lower limit.
+        low: i128,
+        /// Upper limit.
+        high: i128,
+        /// The variable's name.
+        name: String,
+    },
+    /// A user's function; its result.
+    Call(Box<Call>),
+    /// A standard function; the type variable of its row is bound to `elem`.
+    Std {
+        /// The row.
+        func: &'static StdFn,
+        /// What its type variable stands for (any elementary type if it has none).
+        elem: Elem,
+        /// Values of all parameters, in order.
+        args: Vec<Expr>,
+    },
+    /// `REF(x)`, `ADR(x)`: an I32 region offset.
+    RefOf(Place),
+    /// A temporary.
+    Temp(TempId),
+    /// A mistake that was reported; never reaches MIR.
+    Error,
+}
+
+/// A resolved place in memory: a root and steps into it.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// Where it starts.
+    pub root: Root,
+    /// From the root inwards.
+    pub steps: Vec<Step>,
+    /// The type of what lies there.
+    pub ty: TypeId,
+    /// Where.
+    pub span: Span,
+}
+
+/// Where a place starts.
+#[derive(Debug, Clone)]
+pub enum Root {
+    /// A variable of the own POU (an action: of its owner) or a global one. A VAR_IN_OUT is followed to its variable.
+    Var(VarId),
+    /// A temporary of the body.
+    Temp(TempId),
+    /// What a reference points to; checked for NULL and bounds.
+    Deref(Box<Expr>),
+    /// `%MW4` used directly.
+    Address(crate::defs::Address),
+}
+
+/// One step into a place.
+#[derive(Debug, Clone)]
+pub enum Step {
+    /// A component of a structure: index of the field.
+    Field(u32),
+    /// A variable of a function block instance.
+    Member(VarId),
+    /// Elements, one index (LINT) per dimension; the text is the array's name for fault messages.
+    Index(Vec<Expr>, String),
+    /// Follows a reference that lies here.
+    Deref,
+    /// Bit n of an integer or bit string.
+    Bit(u8),
+    /// Byte, word or double word n of a wider bit string: the elementary type and its number.
+    Part(Elem, u8),
+}
+
+/// A call of a user's POU.
+#[derive(Debug, Clone)]
+pub struct Call {
+    /// What is called.
+    pub callee: Callee,
+    /// Values of inputs in written order; converted. A function's omitted inputs are missing and take their initial value.
+    pub inputs: Vec<(VarId, Expr)>,
+    /// Variables for VAR_IN_OUT.
+    pub in_outs: Vec<(VarId, Place)>,
+    /// Outputs that are fetched after the call.
+    pub outputs: Vec<OutputArg>,
+    /// EN: FALSE skips the call (semantics.md \[S6\]).
+    pub en: Option<Expr>,
+    /// ENO: catches faults of the call (\[E4\]).
+    pub eno: Option<Place>,
+    /// Where.
+    pub span: Span,
+}
+
+/// What is called.
+#[derive(Debug, Clone)]
+pub enum Callee {
+    /// A function.
+    Function(PouId),
+    /// An instance of a function block.
+    Instance(Place, PouId),
+    /// An action: of the instance, or (`None`) of the own one.
+    Action(Option<Place>, PouId),
+}
+
+/// `name => target`.
+#[derive(Debug, Clone)]
+pub struct OutputArg {
+    /// The output (or the result) of the callee.
+    pub output: VarId,
+    /// NOT before the name; BOOL only.
+    pub negated: bool,
+    /// The conversion from the output's type to the target's.
+    pub convert: Option<(Elem, Elem)>,
+    /// Where it goes.
+    pub target: Place,
+}
