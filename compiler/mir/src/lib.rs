@@ -1,3 +1,8 @@
 //! HIR to MIR, memory layout, verifier, printer, and the reference interpreter.
 
+pub mod dominators;
+pub mod interp;
 pub mod ir;
+mod operands;
+pub mod print;
+pub mod verify;
