@@ -1,3 +1,5 @@
 //! HIR to MIR, memory layout, verifier, printer, and the reference interpreter.
 
+pub mod build;
 pub mod ir;
+pub mod visit;
