@@ -1,8 +1,10 @@
 //! HIR to MIR, memory layout, verifier, printer, and the reference interpreter.
 
+pub mod build;
 pub mod dominators;
 pub mod interp;
 pub mod ir;
 mod operands;
 pub mod print;
 pub mod verify;
+pub mod visit;
