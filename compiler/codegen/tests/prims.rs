@@ -179,3 +179,15 @@ fn second_operand_constant() {
         }
     }
 }
+
+#[test]
+fn every_target_knows_every_operation() {
+    let cases = all_ops().into_iter().flat_map(|op| Repr::ALL.map(|r| (op, r))).filter(|(op, r)| op.accepts(*r));
+    let funcs: Vec<Func> = cases.map(|(op, repr)| func(op, repr, None)).collect();
+    let count = funcs.len();
+    let program = program(funcs, count);
+    for triple in ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "riscv64gc-unknown-linux-gnu"] {
+        let options = plcc_codegen::object::ObjectOptions { triple: Some(triple), ..Default::default() };
+        plcc_codegen::object::compile(&program, options).expect(triple);
+    }
+}
