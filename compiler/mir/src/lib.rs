@@ -2,4 +2,6 @@
 
 pub mod build;
 pub mod ir;
+pub mod layout;
+pub mod lower;
 pub mod visit;
