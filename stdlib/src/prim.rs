@@ -3,6 +3,10 @@
 //! Constant folding, the interpreter and the tests call [`eval`]; the code generator is its only second reading.
 //! Operations never trap: what IEC calls a fault is checked before, by explicit checks.
 
+mod eval;
+
+pub use eval::eval;
+
 /// How a scalar lies in a register. In a `u64` register the bits above the width are 0 (F32: its bit pattern).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)]

@@ -3,6 +3,8 @@
 
 use crate::prim::Repr;
 
+pub mod math;
+
 /// A pure function on scalars with a native symbol.
 #[derive(Debug)]
 pub struct RtFn {
@@ -16,4 +18,9 @@ pub struct RtFn {
     pub eval: fn(&[u64]) -> u64,
     /// Its address in this process, for the JIT.
     pub address: fn() -> *const u8,
+}
+
+/// The function with this symbol.
+pub fn find(symbol: &str) -> Option<&'static RtFn> {
+    math::ALL.iter().copied().find(|f| f.symbol == symbol)
 }
