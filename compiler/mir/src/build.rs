@@ -36,6 +36,7 @@ pub struct Builder {
     blocks: IndexVec<BlockId, OpenBlock>,
     current: Option<BlockId>,
     source: SourceId,
+    source_used: bool,
     checks_division: bool,
 }
 
@@ -51,6 +52,7 @@ impl Builder {
             blocks: IndexVec::new(),
             current: None,
             source: SourceId::from_raw(0),
+            source_used: false,
             checks_division: true,
         };
         let entry = builder.block();
@@ -77,6 +79,17 @@ impl Builder {
     /// Where the checks, calls and polls that follow come from.
     pub fn set_source(&mut self, source: SourceId) {
         self.source = source;
+        self.source_used = false;
+    }
+
+    /// Whether anything came from there yet.
+    pub fn source_used(&self) -> bool {
+        self.source_used
+    }
+
+    fn source(&mut self) -> SourceId {
+        self.source_used = true;
+        self.source
     }
 
     // ---- blocks ----
@@ -263,7 +276,7 @@ impl Builder {
         result: Option<Repr>,
     ) -> Option<ValueId> {
         let dst = result.map(|repr| self.values.push(repr));
-        let source = self.source;
+        let source = self.source();
         self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: None, source });
         dst
     }
@@ -278,7 +291,7 @@ impl Builder {
     ) -> (Option<ValueId>, ValueId) {
         let dst = result.map(|repr| self.values.push(repr));
         let status = self.values.push(Repr::I32);
-        let source = self.source;
+        let source = self.source();
         self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: Some(status), source });
         (dst, status)
     }
@@ -299,13 +312,13 @@ impl Builder {
         for operand in operands {
             self.expect(*operand, Repr::I64);
         }
-        let source = self.source;
+        let source = self.source();
         self.push(Inst::Check { cond, fault, operands: operands.to_vec(), source });
     }
 
     /// Looks at the watchdog.
     pub fn poll(&mut self) {
-        let source = self.source;
+        let source = self.source();
         self.push(Inst::Poll { source });
     }
 

@@ -4,6 +4,8 @@ pub mod build;
 pub mod dominators;
 pub mod interp;
 pub mod ir;
+pub mod layout;
+pub mod lower;
 mod operands;
 pub mod print;
 pub mod verify;

@@ -1,0 +1,54 @@
+//! Functions of time and date (Ed. 2 table 30) and the scan clock.
+
+use super::*;
+use crate::elem::Elem::*;
+use crate::ops::{self, Op};
+
+fn fixed(name: &str, params: &[(&'static str, Elem)], result: Elem, meaning: Meaning, doc: &'static str) -> StdFn {
+    let params: Vec<(&'static str, Type)> = params.iter().map(|(n, e)| (*n, Type::Fixed(*e))).collect();
+    row(name, "Ed. 2 table 30", Generic::Any, &params, meaning, doc).gives(Type::Fixed(result))
+}
+
+pub(super) fn rows() -> Vec<StdFn> {
+    let add = Meaning::Operator(Operator::Add);
+    let sub = Meaning::Operator(Operator::Sub);
+    // Dates and times are nanoseconds: their sum is that of TIME whatever the types are called.
+    let sum = Meaning::Formula(|_, args, e| Some(ops::emit(Op::Add, Time, args, e)));
+    let clock = Meaning::Formula(|_, _, e| e.clock());
+    let mut rows = vec![
+        fixed("TIME", &[], Time, clock, "The scan clock: the same value all through a scan."),
+        fixed("LTIME", &[], Ltime, clock, "The scan clock: the same value all through a scan."),
+    ];
+    for (t, d, tod, dt, l) in [(Time, Date, Tod, Dt, ""), (Ltime, Ldate, Ltod, Ldt, "L")] {
+        let name = |text: &str| text.replace('@', l);
+        rows.extend([
+            fixed(&name("ADD_@TIME"), &[("IN1", t), ("IN2", t)], t, add, "The sum of two durations."),
+            fixed(&name("SUB_@TIME"), &[("IN1", t), ("IN2", t)], t, sub, "The difference of two durations."),
+            fixed(&name("ADD_@TOD_@TIME"), &[("IN1", tod), ("IN2", t)], tod, add, "A time of day later by IN2."),
+            fixed(&name("ADD_@DT_@TIME"), &[("IN1", dt), ("IN2", t)], dt, add, "A date and time later by IN2."),
+            fixed(&name("SUB_@TOD_@TIME"), &[("IN1", tod), ("IN2", t)], tod, sub, "A time of day earlier by IN2."),
+            fixed(&name("SUB_@DT_@TIME"), &[("IN1", dt), ("IN2", t)], dt, sub, "A date and time earlier by IN2."),
+            fixed(&name("SUB_@DATE_@DATE"), &[("IN1", d), ("IN2", d)], t, sub, "The time from IN2 to IN1."),
+            fixed(&name("SUB_@TOD_@TOD"), &[("IN1", tod), ("IN2", tod)], t, sub, "The time from IN2 to IN1."),
+            fixed(&name("SUB_@DT_@DT"), &[("IN1", dt), ("IN2", dt)], t, sub, "The time from IN2 to IN1."),
+            fixed(
+                &name("CONCAT_@DATE_@TOD"),
+                &[("IN1", d), ("IN2", tod)],
+                dt,
+                sum,
+                "A date and a time of day together.",
+            ),
+        ]);
+        let scaled = |name: String, op, doc| {
+            let params = [("IN1", Type::Fixed(t)), ("IN2", Type::Var)];
+            row(&name, "Ed. 2 table 30", Generic::Num, &params, Meaning::Operator(op), doc).gives(Type::Fixed(t))
+        };
+        let mul = "A duration times a number, to the nearest nanosecond, ties to even.";
+        let div = "A duration divided by a number, to the nearest nanosecond, ties to even.";
+        rows.push(scaled(name("MUL@TIME"), Operator::Mul, mul));
+        rows.push(scaled(name("MUL_@TIME"), Operator::Mul, mul));
+        rows.push(scaled(name("DIV@TIME"), Operator::Div, div));
+        rows.push(scaled(name("DIV_@TIME"), Operator::Div, div));
+    }
+    rows
+}
