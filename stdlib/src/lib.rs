@@ -1,6 +1,7 @@
 //! What the standard fixes, as data: elementary types, values and their text, the operator table, the function table,
 //! the standard function blocks. The compiler, all engines and the runtime read it; it reads nothing of theirs.
 
+pub mod blocks;
 pub mod convert;
 pub mod elem;
 pub mod emit;
