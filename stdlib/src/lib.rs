@@ -7,6 +7,7 @@ pub mod elem;
 pub mod emit;
 pub mod fault;
 pub mod fold;
+pub mod funcs;
 pub mod ops;
 pub mod prim;
 pub mod region;

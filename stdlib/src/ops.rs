@@ -380,12 +380,8 @@ pub fn time_forms(op: Op, left: Elem, right: Elem) -> Option<TimeForm> {
     let long = is_long(left) || is_long(right);
     let form = |op, elem, left, right, result| Some(TimeForm { op, elem, left, right, result });
     match (op, left.family(), right.family()) {
-        (Op::Mul, Duration, _) if right.is_integer() || right.is_real() => {
-            form(Op::TimeMul, right, left, right, left)
-        }
-        (Op::Div, Duration, _) if right.is_integer() || right.is_real() => {
-            form(Op::TimeDiv, right, left, right, left)
-        }
+        (Op::Mul, Duration, _) if right.is_integer() || right.is_real() => form(Op::TimeMul, right, left, right, left),
+        (Op::Div, Duration, _) if right.is_integer() || right.is_real() => form(Op::TimeDiv, right, left, right, left),
         (Op::Add | Op::Sub, Duration | TimeOfDay | DateTime, Duration) => {
             let (l, r) = (lengthen(left, long), lengthen(right, long));
             form(op, l, l, r, l)
