@@ -87,7 +87,7 @@ impl Checker<'_, '_> {
     }
 
     fn bad(&mut self, message: String, span: Span) -> Operand {
-        self.report(Diagnostic::new(codes::BAD_LITERAL, span, message));
+        self.report(Diagnostic::new(codes::LITERAL_VALUE, span, message));
         Operand::Error
     }
 
