@@ -16,27 +16,13 @@ pub fn page(name: &str) -> Result<String, Failure> {
     if let Some(text) = block(&upper) {
         return Ok(format!("Standard function block {upper}, as it is compiled into every project:\n\n{text}\n"));
     }
-    let block_names: Vec<String> = block_names();
-    let names = plcc_diag::codes::ALL.iter().map(|c| c.info().code).chain(funcs::names()).chain(block_names.iter().map(String::as_str));
+    let block_names = blocks::blocks().iter().map(|(n, _)| *n);
+    let names = plcc_diag::codes::ALL.iter().map(|c| c.info().code).chain(funcs::names()).chain(block_names);
     let hint = plcc_hir::similar(&upper, names).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
     Err(Failure::usage(format!("nothing is known about `{name}`{hint}")))
 }
 
-fn block_names() -> Vec<String> {
-    let headers = blocks::sources().iter().flat_map(|(_, text)| text.lines());
-    headers.filter_map(|l| l.strip_prefix("FUNCTION_BLOCK ")).map(|n| n.trim().to_string()).collect()
-}
-
-/// The text of one block with the comment in front of it.
-fn block(name: &str) -> Option<String> {
-    for (_, text) in blocks::sources() {
-        let lines: Vec<&str> = text.lines().collect();
-        let Some(start) = lines.iter().position(|l| l.strip_prefix("FUNCTION_BLOCK ").is_some_and(|n| n.trim() == name)) else {
-            continue;
-        };
-        let end = start + lines[start..].iter().position(|l| *l == "END_FUNCTION_BLOCK")?;
-        let comment = lines[..start].iter().rev().take_while(|l| !l.trim().is_empty()).count();
-        return Some(lines[start - comment..=end].join("\n"));
-    }
-    None
+/// The text of a standard function block.
+fn block(name: &str) -> Option<&'static str> {
+    blocks::blocks().iter().find(|(n, _)| *n == name).map(|(_, text)| text.trim())
 }

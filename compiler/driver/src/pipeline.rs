@@ -44,7 +44,7 @@ pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profi
 pub fn parse(mut sources: SourceMap, ids: &[(FileId, Profile)]) -> Parsed {
     let mut diags = Diagnostics::new();
     let mut files = Vec::new();
-    for (name, text) in plcc_stdlib::blocks::sources() {
+    for (name, text) in plcc_stdlib::blocks::blocks() {
         let id = sources.add_builtin(format!("<{name}>"), *text);
         files.push((id, Profile::Strict, true, plcc_syntax::parse_file(id, text, Profile::Strict, &mut diags)));
     }

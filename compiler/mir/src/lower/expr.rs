@@ -55,7 +55,10 @@ impl FuncLower<'_, '_> {
             ExprKind::Std { func, elem, args } => {
                 let args: Vec<Val> = args.iter().map(|e| Val(self.value(e).raw())).collect();
                 self.at(expr.span, "");
-                ValueId::from_raw(func.emit(&mut self.b, *elem, &args).0)
+                match func.emit(*elem, &args, &mut self.b) {
+                    Some(value) => ValueId::from_raw(value.0),
+                    None => bug!("{} has no formula", func.name),
+                }
             }
             ExprKind::RefOf(place) => self.address(place, Purpose::Address),
             ExprKind::Temp(temp) => {
