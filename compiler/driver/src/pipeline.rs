@@ -78,7 +78,10 @@ pub fn compile(
         .map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
-        plcc_diag::bug!("the verifier found:\n{}\n{}", problems.join("\n"), plcc_mir::print::program(&program));
+        plcc_diag::bug!("the verifier found:\n{}\n{}",
+            problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
+            plcc_mir::print::program(&program, None)
+        );
     }
     let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
     Ok(Compiled { program, image })
