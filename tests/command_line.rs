@@ -93,8 +93,9 @@ fn new_makes_a_project_that_builds_and_runs() {
     let changes: Vec<&str> = done.stdout.lines().filter(|l| l.ends_with("TRUE")).take(1).collect();
     assert_eq!(changes, ["51,TRUE"], "{}", done.stdout);
     assert!(done.stderr.is_empty(), "{}", done.stderr);
-    assert_eq!(plcc(f.path(), &["build", "blink/project.toml"]).code, 0);
-    assert!(f.path().join("blink").is_dir());
+    let inside = f.path().join("blink");
+    assert_eq!(plcc(&inside, &["build", "project.toml"]).code, 0);
+    assert!(inside.join("blink").is_file());
 }
 
 #[test]
