@@ -245,8 +245,7 @@ mod tests {
         };
         for round in 0..300 {
             let count = 1 + round % 12;
-            let edges: Vec<Vec<u32>> =
-                (0..count).map(|_| (0..random(4)).map(|_| random(count)).collect()).collect();
+            let edges: Vec<Vec<u32>> = (0..count).map(|_| (0..random(4)).map(|_| random(count)).collect()).collect();
             let edges: Vec<&[u32]> = edges.iter().map(Vec::as_slice).collect();
             let tree = Dominators::new(&graph(&edges));
             for a in 0..count {

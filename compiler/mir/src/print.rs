@@ -120,7 +120,9 @@ impl Printer<'_> {
                 let how = if *normalise { " as truth value" } else { "" };
                 format!("{} = load {} {}{how}", value(*dst), self.repr(*dst), self.place(place))
             }
-            Inst::Store { place, value: v } => format!("store {} {} := {}", self.repr(*v), self.place(place), value(*v)),
+            Inst::Store { place, value: v } => {
+                format!("store {} {} := {}", self.repr(*v), self.place(place), value(*v))
+            }
             Inst::Copy { dst, src, bytes } => {
                 format!("copy {bytes} bytes {} := {}", self.place(dst), self.place(src))
             }
@@ -191,9 +193,10 @@ impl Printer<'_> {
 
     fn place(&self, place: &Place) -> String {
         // The lowest byte that the place can reach names it: index terms carry `- low * stride` in the offset.
-        let first = place.index.iter().fold(i128::from(place.offset), |at, term| {
-            at + i128::from(term.low) * i128::from(term.stride)
-        });
+        let first = place
+            .index
+            .iter()
+            .fold(i128::from(place.offset), |at, term| at + i128::from(term.low) * i128::from(term.stride));
         let (mut text, rest) = match place.base {
             Base::Reference(v) => (format!("{}^", value(v)), first),
             base => self.name(base, first),

@@ -291,13 +291,8 @@ impl<'a> Decoder<'a> {
                 self.push(op);
             }
             Inst::Poll { source } => {
-                let site = CheckSite {
-                    fault: Fault::Deadline,
-                    source: source.raw(),
-                    low: 0,
-                    high: 0,
-                    operands: Vec::new(),
-                };
+                let site =
+                    CheckSite { fault: Fault::Deadline, source: source.raw(), low: 0, high: 0, operands: Vec::new() };
                 let site = self.check(site);
                 self.push(Op::Poll(site));
             }

@@ -55,7 +55,10 @@ impl FuncLower<'_, '_> {
             ExprKind::Std { func, elem, args } => {
                 let args: Vec<Val> = args.iter().map(|e| Val(self.value(e).raw())).collect();
                 self.at(expr.span, "");
-                ValueId::from_raw(func.emit(&mut self.b, *elem, &args).0)
+                match func.emit(*elem, &args, &mut self.b) {
+                    Some(value) => ValueId::from_raw(value.0),
+                    None => bug!("the standard function {} has no formula", func.name),
+                }
             }
             ExprKind::RefOf(place) => self.address(place, Purpose::Address),
             ExprKind::Temp(temp) => {
@@ -169,11 +172,7 @@ pub(super) fn calls(expr: &Expr) -> bool {
         ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) | ExprKind::RangeCheck { value: inner, .. } => {
             calls(inner)
         }
-        ExprKind::Const(_)
-        | ExprKind::String(_)
-        | ExprKind::WString(_)
-        | ExprKind::Temp(_)
-        | ExprKind::Error => false,
+        ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => false,
     }
 }
 
@@ -182,4 +181,3 @@ pub(super) fn place_calls(place: &HirPlace) -> bool {
     let root = matches!(&place.root, Root::Deref(reference) if calls(reference));
     root || place.steps.iter().any(|s| matches!(s, Step::Index(indices, _) if indices.iter().any(calls)))
 }
-

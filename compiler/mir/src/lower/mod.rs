@@ -113,3 +113,6 @@ struct Context<'a> {
     /// The first function whose frame is too large.
     too_large: Option<TooLarge>,
 }
+
+#[cfg(test)]
+mod tests;
