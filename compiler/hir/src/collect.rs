@@ -150,7 +150,7 @@ fn new_pou<'a>(
         builtin,
         span: name.span,
     });
-    cx.pou_slots.push(PouSlot { scope: Default::default(), body, span });
+    cx.pou_slots.push(PouSlot { scope: Default::default(), body });
     id
 }
 
@@ -247,14 +247,8 @@ fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
                 duplicate(cx, "global variable", name, cx.defs.vars[first].span);
                 continue;
             }
-            let var = new_var(
-                cx,
-                name.text.clone(),
-                name.span,
-                Section::Global,
-                None,
-                Some((&decl.ty, decl.init.as_ref())),
-            );
+            let var =
+                new_var(cx, name.text.clone(), name.span, Section::Global, None, Some((&decl.ty, decl.init.as_ref())));
             qualify(cx, var, section);
             locate(cx, var, decl);
             cx.defs.globals.push(var);
@@ -331,8 +325,7 @@ fn declare_var<'a>(
         };
         return duplicate(cx, "variable", name, first);
     }
-    let var =
-        new_var(cx, name.text.clone(), name.span, place, Some(id), Some((&decl.ty, decl.init.as_ref())));
+    let var = new_var(cx, name.text.clone(), name.span, place, Some(id), Some((&decl.ty, decl.init.as_ref())));
     qualify(cx, var, section);
     locate(cx, var, decl);
     if decl.at.is_some() && !matches!(place, Section::Local) {
