@@ -447,10 +447,9 @@ impl Placer<'_> {
                 split.stride
             };
             for &id in &self.defs.pous[split.pou].vars {
-                if in_instance(&self.defs.vars[id]) && self.layout.is_addressable(self.defs, id) {
-                    if let Some(Slot::Instance(offset)) = &mut self.layout.slots[id] {
-                        *offset += distance as u32;
-                    }
+                let moves = in_instance(&self.defs.vars[id]) && self.layout.is_addressable(self.defs, id);
+                if let (true, Some(Slot::Instance(offset))) = (moves, &mut self.layout.slots[id]) {
+                    *offset += distance as u32;
                 }
             }
         }

@@ -192,7 +192,9 @@ fn passes(elem: Elem, from: i128, to: i128, by: Option<(Elem, i128)>, constant: 
 fn for_counts_the_mathematical_range() {
     use Elem::{Int, Lint, Sint, Uint, Ulint, Usint};
     let max = i128::from(i64::MAX);
-    let rows: &[(Elem, i128, i128, Option<(Elem, i128)>, (i128, i128))] = &[
+    // Type, FROM, TO, BY with its type, passes and final value.
+    type Row = (Elem, i128, i128, Option<(Elem, i128)>, (i128, i128));
+    let rows: &[Row] = &[
         (Int, 1, 10, None, (10, 11)),
         (Int, 10, 1, None, (0, 10)),
         (Int, 3, 3, None, (1, 4)),
