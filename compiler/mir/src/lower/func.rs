@@ -254,9 +254,7 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             return;
         }
         let data = init::bytes(self.defs, self.cx.layout, ty, init);
-        let at = self.cx.constants.place(data) + u64::from(self.cx.layout.constants.start);
-        // Too many constants are reported when the layout is closed.
-        let constant = Place::new(Base::Region, u32::try_from(at).unwrap_or(u32::MAX));
+        let constant = self.constant_place(data);
         self.b.copy(place, constant, bytes);
     }
 

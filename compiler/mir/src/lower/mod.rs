@@ -17,6 +17,7 @@ mod path;
 mod place;
 pub mod reach;
 mod stmt;
+mod string;
 mod task;
 
 use crate::ir::{FuncId, Program, Source, SourceId};

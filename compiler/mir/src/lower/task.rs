@@ -36,7 +36,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.program_variable(&instance, *var);
-                self.aggregate_into(value, to.place);
+                self.aggregate_into(value, to.place, to.ty);
             }
         }
         let func = self.func(program.pou);
@@ -50,8 +50,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.place(target);
-                let bytes = self.cx.layout.size(self.defs, from.ty);
-                self.b.copy(to.place, from.place, bytes);
+                self.copy_value(to.place, to.ty, from.place, from.ty);
             }
         }
     }
