@@ -9,7 +9,10 @@ use std::fmt::Write;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ty {
     Bool,
-    Int { bits: u32, signed: bool },
+    Int {
+        bits: u32,
+        signed: bool,
+    },
     Bits(u32),
     Real,
     Lreal,
@@ -615,7 +618,11 @@ impl Generator {
             },
             Ty::Small => {
                 let value = self.expr(Ty::Int { bits: 16, signed: true }, d);
-                if self.faults && self.chance(20) { format!("i{}", self.rng.u32(0..3)) } else { format!("LIMIT(-5, {value}, 20)") }
+                if self.faults && self.chance(20) {
+                    format!("i{}", self.rng.u32(0..3))
+                } else {
+                    format!("LIMIT(-5, {value}, 20)")
+                }
             }
         }
     }
@@ -661,11 +668,7 @@ impl Generator {
             5 | 6 => {
                 let op = ["/", "MOD"][self.rng.usize(0..2)];
                 let variable = if self.faults && self.chance(10) { self.variable(ty) } else { None };
-                let divisor = if let Some(text) = variable {
-                    text
-                } else {
-                    format!("{name}#{}", self.rng.u32(1..9))
-                };
+                let divisor = if let Some(text) = variable { text } else { format!("{name}#{}", self.rng.u32(1..9)) };
                 format!("({} {op} {divisor})", self.expr(ty, d))
             }
             7 => match ty {
