@@ -769,7 +769,8 @@ fn standard_block(n: usize) -> Block {
     let bool = Ty::Bool;
     let int = Ty::Int { bits: 16, signed: true };
     let names = |list: &[(&str, Ty)]| list.iter().map(|(n, t)| (n.to_string(), *t)).collect();
-    let (name, inputs, outputs): (&str, Vec<(String, Ty)>, Vec<(String, Ty)>) = match n {
+    type Parameters = Vec<(String, Ty)>;
+    let (name, inputs, outputs): (&str, Parameters, Parameters) = match n {
         0 => ("TON", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
         1 => ("TOF", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
         2 => ("TP", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),

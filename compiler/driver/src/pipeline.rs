@@ -28,8 +28,11 @@ pub struct Compiled {
     pub image: Image,
 }
 
+/// Project, texts, and the profile of each of the user's files.
+pub type Loaded = (Project, SourceMap, Vec<(FileId, Profile)>);
+
 /// load: project and paths to texts.
-pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profile)>), Failure> {
+pub fn load(args: &SourceArgs) -> Result<Loaded, Failure> {
     let project = project::load(args)?;
     let mut sources = SourceMap::new();
     let mut ids = Vec::new();

@@ -125,13 +125,14 @@ fn json_message(d: &Diagnostic, sources: &SourceMap) -> Value {
         "message": d.message,
         "help": d.help,
     });
-    let label = |l: &plcc_diag::Label| {
-        let mut v = place(l.span, sources);
-        v["text"] = json!(l.text);
-        v
-    };
-    value["primary"] = label(&d.primary);
-    value["secondary"] = d.secondary.iter().map(label).collect();
+    value["primary"] = json_label(&d.primary, sources);
+    value["secondary"] = d.secondary.iter().map(|l| json_label(l, sources)).collect();
+    value
+}
+
+fn json_label(label: &plcc_diag::Label, sources: &SourceMap) -> Value {
+    let mut value = place(label.span, sources);
+    value["text"] = json!(label.text);
     value
 }
 
