@@ -208,7 +208,7 @@ impl Blocks<'_, '_> {
     pub(super) fn split_end(&mut self) -> bool {
         let t = self.peek(0);
         let text = t.text(self.text);
-        if text.len() < 3 || !text[..3].eq_ignore_ascii_case("END") {
+        if !text.get(..3).is_some_and(|t| t.eq_ignore_ascii_case("END")) {
             return false;
         }
         let (length, block) = if text.len() == 3 {
