@@ -218,7 +218,9 @@ impl Layout {
                     work.extend(defs.structs[*id].fields.iter().map(|f| f.ty));
                 }
                 Type::Instance(id) if !std::mem::replace(&mut self.exposed[*id], true) => {
-                    work.extend(defs.pous[*id].vars.iter().map(|v| &defs.vars[*v]).filter(|v| in_instance(v)).map(|v| v.ty));
+                    work.extend(
+                        defs.pous[*id].vars.iter().map(|v| &defs.vars[*v]).filter(|v| in_instance(v)).map(|v| v.ty),
+                    );
                 }
                 _ => {}
             }
@@ -321,9 +323,8 @@ impl Placer<'_> {
             let bytes = self.layout.shapes.of(self.defs, var.ty).bytes;
             var.address.map(|a| (a, bytes, self.layout.is_addressable(self.defs, *id), Some(*id)))
         });
-        let direct = reach.addresses.iter().map(|a| {
-            (a.address, self.layout.shapes.of(self.defs, a.ty).bytes, a.taken, None)
-        });
+        let direct =
+            reach.addresses.iter().map(|a| (a.address, self.layout.shapes.of(self.defs, a.ty).bytes, a.taken, None));
         for (address, bytes, taken, var) in declared.chain(direct) {
             let bytes = if address.bit.is_some() { 1 } else { bytes };
             let end = u64::from(address.byte) + bytes;

@@ -172,11 +172,7 @@ pub(super) fn calls(expr: &Expr) -> bool {
         ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) | ExprKind::RangeCheck { value: inner, .. } => {
             calls(inner)
         }
-        ExprKind::Const(_)
-        | ExprKind::String(_)
-        | ExprKind::WString(_)
-        | ExprKind::Temp(_)
-        | ExprKind::Error => false,
+        ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => false,
     }
 }
 
@@ -185,4 +181,3 @@ pub(super) fn place_calls(place: &HirPlace) -> bool {
     let root = matches!(&place.root, Root::Deref(reference) if calls(reference));
     root || place.steps.iter().any(|s| matches!(s, Step::Index(indices, _) if indices.iter().any(calls)))
 }
-

@@ -119,7 +119,13 @@ pub(super) struct FuncLower<'c, 'a> {
 
 impl<'c, 'a> FuncLower<'c, 'a> {
     /// `frame_bytes`: what its variables take.
-    pub fn new(cx: &'c mut Context<'a>, mut b: Builder, name: String, body: Option<&'a Body>, frame_bytes: u32) -> Self {
+    pub fn new(
+        cx: &'c mut Context<'a>,
+        mut b: Builder,
+        name: String,
+        body: Option<&'a Body>,
+        frame_bytes: u32,
+    ) -> Self {
         b.set_checks_division(cx.checks.division);
         Self {
             defs: cx.defs,
