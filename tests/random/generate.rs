@@ -9,7 +9,10 @@ use std::fmt::Write;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ty {
     Bool,
-    Int { bits: u32, signed: bool },
+    Int {
+        bits: u32,
+        signed: bool,
+    },
     Bits(u32),
     Real,
     Lreal,
@@ -388,7 +391,8 @@ impl Generator {
 
     fn assign(&mut self) {
         if self.vars.iter().any(|v| v.text == "s.a") && self.chance(8) {
-            self.line(if self.rng.bool() { "s := t;" } else { "t := s;" });
+            let text = if self.rng.bool() { "s := t;" } else { "t := s;" };
+            self.line(text);
             return;
         }
         let Some(var) = self.writable() else { return };
@@ -410,7 +414,7 @@ impl Generator {
                 format!("LIMIT({low}, {value}, {high})")
             }
             // Sometimes outside.
-            _ if self.faults => self.expr(Ty::Int { bits: 16, signed: true }, 1),
+            _ if self.faults => format!("i{}", self.rng.u32(0..3)),
             _ => self.rng.i64(low..=high).to_string(),
         }
     }
@@ -492,7 +496,7 @@ impl Generator {
         let by = match self.rng.u32(0..5) {
             0 => " BY 2".to_string(),
             1 => " BY -1".to_string(),
-            2 if self.faults && self.chance(20) => format!(" BY {}", self.expr(Ty::Int { bits: 16, signed: true }, 1)),
+            2 if self.faults && self.chance(20) => format!(" BY i{}", self.rng.u32(0..3)),
             _ => String::new(),
         };
         self.line(&format!("FOR {var} := {from} TO {to}{by} DO"));
@@ -614,7 +618,11 @@ impl Generator {
             },
             Ty::Small => {
                 let value = self.expr(Ty::Int { bits: 16, signed: true }, d);
-                if self.faults && self.chance(20) { value } else { format!("LIMIT(-5, {value}, 20)") }
+                if self.faults && self.chance(20) {
+                    format!("i{}", self.rng.u32(0..3))
+                } else {
+                    format!("LIMIT(-5, {value}, 20)")
+                }
             }
         }
     }
@@ -659,11 +667,8 @@ impl Generator {
             }
             5 | 6 => {
                 let op = ["/", "MOD"][self.rng.usize(0..2)];
-                let divisor = if self.faults && self.chance(10) {
-                    self.expr(ty, d)
-                } else {
-                    format!("{name}#{}", self.rng.u32(1..9))
-                };
+                let variable = if self.faults && self.chance(10) { self.variable(ty) } else { None };
+                let divisor = if let Some(text) = variable { text } else { format!("{name}#{}", self.rng.u32(1..9)) };
                 format!("({} {op} {divisor})", self.expr(ty, d))
             }
             7 => match ty {
@@ -700,7 +705,7 @@ impl Generator {
             4 | 5 => {
                 let op = ["SHL", "SHR", "ROL", "ROR"][self.rng.usize(0..4)];
                 let count = if self.faults && self.chance(10) {
-                    self.expr(Ty::Int { bits: 16, signed: true }, 1)
+                    format!("i{}", self.rng.u32(0..3))
                 } else {
                     self.rng.u32(0..bits + 3).to_string()
                 };

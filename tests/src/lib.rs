@@ -1,5 +1,7 @@
 //! What the test programs share: running plcc, comparing texts.
 
+pub mod compile;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

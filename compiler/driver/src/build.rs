@@ -45,7 +45,7 @@ pub fn build(args: &BuildArgs, color: Color) -> Result<u8, Failure> {
     let target = args.target.as_deref().or(project.build.target.as_deref()).filter(|t| *t != link::HOST);
     for stage in &args.emit {
         match stage {
-            Stage::Mir => output(&plcc_mir::print::program(&compiled.program))?,
+            Stage::Mir => output(&plcc_mir::print::program(&compiled.program, None))?,
             Stage::Clif => output(&text(plcc_codegen::text::emit_clif(&compiled.program, target)))?,
             Stage::Asm => output(&text(plcc_codegen::text::emit_asm(&compiled.program, target)))?,
             _ => {}
@@ -87,10 +87,7 @@ fn text(result: Result<String, plcc_codegen::CodegenError>) -> String {
 
 /// `-o`, `[build] output`, or the project's name in the current folder.
 fn output_path(args: &BuildArgs, project: &Project) -> PathBuf {
-    args.output
-        .clone()
-        .or_else(|| project.build.output.clone())
-        .unwrap_or_else(|| PathBuf::from(&project.name))
+    args.output.clone().or_else(|| project.build.output.clone()).unwrap_or_else(|| PathBuf::from(&project.name))
 }
 
 fn with_suffix(path: &Path, suffix: &str) -> PathBuf {

@@ -74,11 +74,15 @@ pub fn compile(
     code: &CodeArgs,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
-    let (program, layout) = plcc_mir::lower::lower(&checked.defs, app, 0, checks, false)
-        .map_err(|e| too_large(e, &parsed.sources))?;
+    let (program, layout) =
+        plcc_mir::lower::lower(&checked.defs, app, 0, checks, false).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
-        plcc_diag::bug!("the verifier found:\n{}\n{}", problems.join("\n"), plcc_mir::print::program(&program));
+        plcc_diag::bug!(
+            "the verifier found:\n{}\n{}",
+            problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
+            plcc_mir::print::program(&program, None)
+        );
     }
     let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
     Ok(Compiled { program, image })

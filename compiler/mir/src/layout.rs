@@ -440,17 +440,16 @@ impl Placer<'_> {
             let distance = if split.instances > 0 {
                 self.align(16)?;
                 let distance = self.cursor - split.start;
-                self.cursor += split.stride * split.instances;
-                self.align(16)?;
+                self.cursor += split.stride * (split.instances - 1) + split.addressable_bytes;
+                self.align(1)?;
                 distance
             } else {
                 split.stride
             };
             for &id in &self.defs.pous[split.pou].vars {
-                if in_instance(&self.defs.vars[id]) && self.layout.is_addressable(self.defs, id) {
-                    if let Some(Slot::Instance(offset)) = &mut self.layout.slots[id] {
-                        *offset += distance as u32;
-                    }
+                let moves = in_instance(&self.defs.vars[id]) && self.layout.is_addressable(self.defs, id);
+                if let (true, Some(Slot::Instance(offset))) = (moves, &mut self.layout.slots[id]) {
+                    *offset += distance as u32;
                 }
             }
         }

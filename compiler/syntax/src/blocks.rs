@@ -12,6 +12,7 @@ mod ends;
 mod il;
 
 use crate::Profile;
+use crate::lexer::Lexed;
 use crate::report::Reporter;
 use crate::token::{Tok, Token};
 use plcc_diag::codes;
@@ -22,26 +23,31 @@ const MAX_BLOCKS: usize = 200;
 const MAX_PARENS: u32 = 1000;
 
 /// The items of a file. Each slice starts with `StartItem` and is balanced.
-pub fn split(text: &str, tokens: &[Token], profile: Profile, report: &mut Reporter) -> Vec<Vec<Token>> {
-    let mut blocks = Blocks {
-        text,
-        tokens,
-        at: 0,
-        profile,
-        report,
-        stack: Vec::new(),
-        out: Vec::new(),
-        items: Vec::new(),
-        parens: 0,
-        lost: false,
-        next_end_var: 0,
-        bare_ends: Vec::new(),
-    };
-    while blocks.at < tokens.len() {
+pub fn split(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) -> Vec<Vec<Token>> {
+    let mut blocks = Blocks::new(text, lexed, profile, report);
+    while blocks.at < lexed.tokens.len() {
         blocks.step();
     }
     blocks.end_of_file();
     blocks.items
+}
+
+/// A body that stands alone: one slice that starts with `StartBody`.
+pub fn body(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) -> Vec<Token> {
+    let mut blocks = Blocks::new(text, lexed, profile, report);
+    // A POU around it keeps every rule in one place; its words are no tokens of the text.
+    let opener = Token::inserted(Tok::Program, 0);
+    blocks.stack.push(Frame::new(Block::Program, opener, None, None));
+    blocks.out.push(Token::inserted(Tok::StartBody, 0));
+    blocks.start_body();
+    while blocks.at < lexed.tokens.len() && !blocks.stack.is_empty() {
+        blocks.step();
+    }
+    if blocks.stack.len() > 1 {
+        blocks.close_above(1, blocks.peek(0));
+    }
+    blocks.hint_semicolons();
+    blocks.out
 }
 
 /// Constructs with an END word.
@@ -168,9 +174,18 @@ struct Frame {
     suspect: Option<(Token, Token)>,
 }
 
+impl Frame {
+    fn new(block: Block, opener: Token, indent: Option<u32>, behind_else: Option<Token>) -> Self {
+        let (phase, has_else, has_of) = (Phase::Head, false, false);
+        Self { block, opener, phase, indent, has_else, has_of, behind_else, else_if: None, suspect: None }
+    }
+}
+
 struct Blocks<'a, 'd> {
     text: &'a str,
     tokens: &'a [Token],
+    /// See [`Lexed`].
+    rest_is_comment: bool,
     /// The next token.
     at: usize,
     profile: Profile,
@@ -189,7 +204,25 @@ struct Blocks<'a, 'd> {
     bare_ends: Vec<Token>,
 }
 
-impl Blocks<'_, '_> {
+impl<'a, 'd> Blocks<'a, 'd> {
+    fn new(text: &'a str, lexed: &'a Lexed, profile: Profile, report: &'a mut Reporter<'d>) -> Self {
+        Self {
+            text,
+            tokens: &lexed.tokens,
+            rest_is_comment: lexed.rest_is_comment,
+            at: 0,
+            profile,
+            report,
+            stack: Vec::new(),
+            out: Vec::new(),
+            items: Vec::new(),
+            parens: 0,
+            lost: false,
+            next_end_var: 0,
+            bare_ends: Vec::new(),
+        }
+    }
+
     /// The token `ahead` of the next; at the end of the file one of a kind that fits nowhere.
     fn peek(&self, ahead: usize) -> Token {
         match self.tokens.get(self.at + ahead) {
@@ -368,17 +401,7 @@ impl Blocks<'_, '_> {
             _ => None,
         };
         let indent = self.indent(opener);
-        self.stack.push(Frame {
-            block,
-            opener,
-            phase: Phase::Head,
-            indent,
-            has_else: false,
-            has_of: false,
-            behind_else,
-            else_if: None,
-            suspect: None,
-        });
+        self.stack.push(Frame::new(block, opener, indent, behind_else));
         self.take(kind);
     }
 
@@ -446,6 +469,11 @@ impl Blocks<'_, '_> {
                 self.open_action();
             }
             Tok::Id if self.unsupported() => {}
+            // Reported by the lexer.
+            Tok::Bad => {
+                self.lost = true;
+                self.at += 1;
+            }
             _ => self.outside(t),
         }
     }
@@ -501,6 +529,11 @@ impl Blocks<'_, '_> {
         if !self.stack.is_empty() {
             self.close_above(0, self.peek(0));
         }
+        self.hint_semicolons();
+    }
+
+    /// One hint for all END words of the file that lack the `;` of the standard.
+    fn hint_semicolons(&mut self) {
         if self.profile == Profile::Strict && !self.bare_ends.is_empty() {
             let t = self.bare_ends[0];
             let more = match self.bare_ends.len() - 1 {

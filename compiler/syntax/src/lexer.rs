@@ -19,6 +19,8 @@ pub struct Lexed {
     pub tokens: Vec<Token>,
     /// In the order of the text.
     pub pragmas: Vec<Pragma>,
+    /// A comment that is not closed hides the rest of the text.
+    pub rest_is_comment: bool,
 }
 
 /// Cuts `text` (at most 4 GiB) into tokens.
@@ -30,7 +32,7 @@ pub fn lex(text: &str, report: &mut Reporter) -> Lexed {
         first: true,
         nested_comments: true,
         bad_until: 0,
-        out: Lexed { tokens: Vec::with_capacity(text.len() / 4), pragmas: Vec::new() },
+        out: Lexed { tokens: Vec::with_capacity(text.len() / 4), ..Lexed::default() },
         report,
     };
     while lexer.at < lexer.bytes.len() {
@@ -173,6 +175,7 @@ impl Lexer<'_, '_, '_> {
                 message = message.help(format!("write `{close}` where the comment ends"));
             }
             self.report.push(message);
+            self.out.rest_is_comment = first_end.is_none();
             first_end.unwrap_or(self.bytes.len())
         });
         self.first |= self.bytes[self.at..end].contains(&b'\n');
@@ -305,8 +308,10 @@ impl Lexer<'_, '_, '_> {
                 message = message.help("this does not look like a text file");
             }
             self.report.push(message);
+            self.push(Tok::Bad, length);
+        } else {
+            self.at += length;
         }
-        self.at += length;
         self.bad_until = self.at;
     }
 }

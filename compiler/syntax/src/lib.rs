@@ -36,7 +36,7 @@ pub enum Profile {
 pub fn parse_file(file: FileId, text: &str, profile: Profile, diags: &mut Diagnostics) -> ast::File {
     let mut report = Reporter::new(file, diags);
     let lexed = lexer::lex(text, &mut report);
-    let slices = blocks::split(text, &lexed.tokens, profile, &mut report);
+    let slices = blocks::split(text, &lexed, profile, &mut report);
     let cx = Context::new(file, text);
     let mut items = Vec::with_capacity(slices.len());
     for tokens in slices {
@@ -56,4 +56,49 @@ pub fn parse_expression(file: FileId, text: &str, diags: &mut Diagnostics) -> Op
         Parsed::Expr(e) => Some(*e),
         Parsed::Item(_) | Parsed::Body(_) => None,
     }
+}
+
+/// Parses a body that stands alone, as in PLCopen XML: the body and the ACTIONs in it. The span of a node counts from the start
+/// of `text`.
+pub fn parse_body(
+    file: FileId,
+    text: &str,
+    profile: Profile,
+    diags: &mut Diagnostics,
+) -> (ast::Body, Vec<ast::Action>) {
+    let mut report = Reporter::new(file, diags);
+    let lexed = lexer::lex(text, &mut report);
+    let tokens = blocks::body(text, &lexed, profile, &mut report);
+    match recover::parse(&Context::new(file, text), tokens, &mut report) {
+        Some(Parsed::Body(body)) => *body,
+        _ => (ast::Body::St(Vec::new()), Vec::new()),
+    }
+}
+
+/// The tokens of a source, one line of text per line of the source, for `--emit tokens`.
+pub fn print_tokens(file: FileId, text: &str) -> String {
+    let mut diags = Diagnostics::new();
+    let mut report = Reporter::new(file, &mut diags);
+    let lexed = lexer::lex(text, &mut report);
+    let mut out = String::new();
+    let (mut line, mut counted) = (1, 0);
+    for t in &lexed.tokens {
+        if t.first {
+            line += text[counted..t.start as usize].matches('\n').count();
+            counted = t.start as usize;
+            let gap = if out.is_empty() { "" } else { "\n" };
+            out.push_str(&format!("{gap}{line}:"));
+        }
+        let written = t.text(text);
+        match t.kind {
+            Tok::Id => out.push_str(&format!(" name `{written}`")),
+            Tok::Int | Tok::Lit => out.push_str(&format!(" literal `{written}`")),
+            Tok::Qualified | Tok::Address | Tok::Part | Tok::Bad => {
+                out.push_str(&format!(" {} `{written}`", t.kind.describe().trim_start_matches(['a', 'n', ' '])));
+            }
+            _ => out.push_str(&format!(" {written}")),
+        }
+    }
+    out.push('\n');
+    out
 }

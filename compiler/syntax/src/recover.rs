@@ -109,6 +109,8 @@ impl Recovery<'_, '_> {
     fn mend(&mut self, refused: &Refused) -> bool {
         let segment = self.segment(refused.at);
         let place = self.place(segment.start);
+        // What the lexer has told needs no second message.
+        let told = self.kind(refused.at) == Tok::Bad || self.kind(refused.at.wrapping_sub(1)) == Tok::Bad;
         let attempts = match self.seen.iter_mut().find(|s| s.0 == place) {
             Some(s) => {
                 s.1 += 1;
@@ -125,12 +127,12 @@ impl Recovery<'_, '_> {
         if attempts < 3
             && let Some(message) = self.insert_missing(refused, &segment)
         {
-            if attempts == 0 {
+            if attempts == 0 && !told {
                 self.say(message);
             }
             return true;
         }
-        if attempts == 0 {
+        if attempts == 0 && !told {
             let message = self.unexpected(refused);
             self.say(message);
         }

@@ -19,11 +19,6 @@ impl<'d> Reporter<'d> {
         Self { file, diags, left: MAX_MESSAGES }
     }
 
-    /// The file.
-    pub fn file(&self) -> FileId {
-        self.file
-    }
-
     /// Bytes `start..end` of the file.
     pub fn span(&self, start: u32, end: u32) -> Span {
         Span::new(self.file, start, end)
@@ -32,11 +27,6 @@ impl<'d> Reporter<'d> {
     /// A message about bytes `start..end`, to be completed and given to [`push`](Self::push).
     pub fn at(&self, code: Code, start: u32, end: u32, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(code, self.span(start, end), message)
-    }
-
-    /// Whether further messages are dropped.
-    pub fn is_full(&self) -> bool {
-        self.left == 0
     }
 
     /// Adds a message, unless the file has had its share.

@@ -137,7 +137,7 @@ impl Blocks<'_, '_> {
     }
 
     /// Whether a statement may begin with the next token.
-    fn at_statement(&self) -> bool {
+    pub(super) fn at_statement(&self) -> bool {
         use Tok::*;
         matches!(self.last(), Semi | Then | Do | CaseOf | Else | Repeat | BodySt | Colon)
     }

@@ -90,12 +90,8 @@ impl Blocks<'_, '_> {
     /// What an END word needs before it.
     fn before_end(&mut self) {
         let Some(frame) = self.stack.last() else { return };
-        let (block, phase) = (frame.block, frame.phase);
-        match (block, phase) {
-            (Block::Program | Block::Function | Block::FunctionBlock | Block::Action, Phase::Head) => {
-                self.insert(Tok::BodySt);
-            }
-            _ => {}
+        if frame.phase == Phase::Head && (frame.block.is_pou() || frame.block == Block::Action) {
+            self.insert(Tok::BodySt);
         }
     }
 
@@ -147,7 +143,10 @@ impl Blocks<'_, '_> {
         if self.stack.len() <= from {
             return;
         }
-        self.report_unclosed(from, t);
+        // Behind a comment that swallowed the rest of the file nothing more can be said.
+        if !(self.rest_is_comment && t.is_inserted()) {
+            self.report_unclosed(from, t);
+        }
         while self.stack.len() > from {
             let frame = self.stack[self.stack.len() - 1];
             self.before_end();
@@ -175,12 +174,12 @@ impl Blocks<'_, '_> {
         let open: Vec<Frame> = self.stack[from..].iter().rev().copied().collect();
         let Some(frame) = open.first() else { return };
         let ends: Vec<&str> = open.iter().map(|f| f.block.end().describe()).collect();
-        let ends = ends.join(", ");
+        let (ends, are) = (ends.join(", "), if ends.len() > 1 { "are" } else { "is" });
         if let Some((behind, opener)) = frame.else_if.or(frame.behind_else.map(|e| (e, frame.opener))) {
             self.report.push(
                 self.report
                     .at(codes::ELSE_IF, behind.start, opener.end, "ELSE IF opens a second IF, which is not closed")
-                    .also(self.report.span(t.start, t.end), format!("{ends} is missing before this"))
+                    .also(self.report.span(t.start, t.end), format!("{ends} {are} missing before this"))
                     .help("write `ELSIF` for a further condition of the same IF"),
             );
             return;
@@ -206,7 +205,7 @@ impl Blocks<'_, '_> {
             let span = self.report.span(outer.opener.start, outer.opener.end);
             message = message.also(span, format!("this {name} is not closed either"));
         }
-        self.report.push(message.help(format!("{ends} is missing")));
+        self.report.push(message.help(format!("{ends} {are} missing")));
     }
 
     /// END words in two parts (`END-IF`, `END IF`) or without underline (`ENDIF`): reported and taken for what they mean.
@@ -224,7 +223,7 @@ impl Blocks<'_, '_> {
         } else {
             let next = self.peek(1);
             let alone = next.first || matches!(next.kind, Tok::Semi);
-            (1, opened_by(&text[3..]).filter(|_| alone && t.first))
+            (1, opened_by(&text[3..]).filter(|_| alone && (t.first || self.at_statement())))
         };
         let Some(block) = block else { return false };
         let end = self.peek(length - 1).end;

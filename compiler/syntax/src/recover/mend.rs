@@ -45,6 +45,14 @@ impl Recovery<'_, '_> {
         let at = refused.at;
         let (start, end) = self.bytes(at);
         match self.kind(at) {
+            Tok::To if refused.wants(":=") => {
+                let first = self.tokens[..at].iter().rposition(|t| t.kind == Tok::For)? + 1;
+                let eq = first + self.tokens[first..at].iter().position(|t| t.kind == Tok::Eq)?;
+                self.tokens[eq].kind = Tok::Assign;
+                let (start, end) = self.bytes(eq);
+                let message = self.report.at(codes::EQUALS_FOR_ASSIGN, start, end, "`=` compares, it does not assign");
+                Some(message.help("write `:=`"))
+            }
             Tok::Eq if refused.wants(":=") => {
                 self.tokens[at].kind = Tok::Assign;
                 let message = self.report.at(codes::EQUALS_FOR_ASSIGN, start, end, "`=` compares, it does not assign");
@@ -162,6 +170,17 @@ impl Recovery<'_, '_> {
             self.insert(at, Tok::Bad);
             return Some(message.help("write for example `: INT`"));
         }
+        if refused.wants("OF") && matches!(kind, Tok::Id | Tok::Array | Tok::RefWord | Tok::LParen | Tok::Struct) {
+            let message = self.missing(codes::MISSING_WORD, at, "OF is missing before the type of the elements");
+            self.insert(at, Tok::Of);
+            return Some(message.help("an array is written `ARRAY [1..3] OF INT`"));
+        }
+        let has_to = self.tokens[segment.clone()].iter().any(|t| t.kind == Tok::To);
+        if refused.wants("TO") && !has_to && (is_operand_start(kind) || kind == Tok::LParen) {
+            let message = self.missing(codes::MISSING_WORD, at, "TO is missing here");
+            self.insert(at, Tok::To);
+            return Some(message.help("write `TO`"));
+        }
         if !refused.wants(":") {
             return None;
         }
@@ -248,6 +267,9 @@ impl Recovery<'_, '_> {
             self.tokens[at].kind = close;
         } else {
             self.insert(at, close);
+            if self.kind(at.wrapping_sub(1)) == Tok::Eol {
+                self.insert(at + 1, Tok::Eol);
+            }
         }
         Some(message.help(format!("write `{sign}`")))
     }

@@ -9,7 +9,12 @@ impl Recovery<'_, '_> {
     pub(super) fn unexpected(&self, refused: &Refused) -> Diagnostic {
         let (start, end) = self.bytes(refused.at);
         let found = self.found(refused.at);
+        let before = self.kind(refused.at.wrapping_sub(1));
+        let nameless = refused.wants("name") && refused.expected.len() == 1;
         let message = match expectation(refused) {
+            _ if nameless && !matches!(before, Tok::Comma | Tok::Dot) => {
+                format!("a name is missing behind {}", before.describe())
+            }
             Some(expected) => format!("expected {expected}, found {found}"),
             None => format!("{found} cannot stand here"),
         };
@@ -26,7 +31,11 @@ impl Recovery<'_, '_> {
     pub(super) fn found(&self, at: usize) -> String {
         match self.tokens.get(at) {
             None => "the end".into(),
-            Some(t) if t.is_inserted() || t.kind == Tok::Bad => t.kind.describe().into(),
+            Some(t) if t.kind == Tok::Bad => t.kind.describe().into(),
+            Some(t) if t.is_inserted() => match self.tokens[at..].iter().find(|t| !t.is_inserted()) {
+                Some(t) => format!("`{}`", crate::blocks::shorten(t.text(self.text))),
+                None => "the end".into(),
+            },
             Some(t) => format!("`{}`", crate::blocks::shorten(t.text(self.text))),
         }
     }
