@@ -266,6 +266,8 @@ impl<'a, 'd> Blocks<'a, 'd> {
     /// All tokens pass here: what nests too deeply in parentheses is cut out.
     fn emit(&mut self, t: Token) {
         match t.kind {
+            // Of several `;` in a row one is enough.
+            Tok::Semi if self.last() == Tok::Semi => return,
             Tok::LParen | Tok::LBracket => {
                 self.parens += 1;
                 if self.parens > MAX_PARENS {

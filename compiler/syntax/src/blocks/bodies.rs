@@ -26,11 +26,15 @@ impl Blocks<'_, '_> {
         if self.step_here() || self.transition_here() {
             return true;
         }
-        if !self.action_here() {
+        // Steps may come behind the ACTIONs of a POU, once per POU.
+        if !self.action_here() || !self.top().is_some_and(Block::is_pou) {
             return false;
         }
         let rest = self.tokens[self.at..].iter().enumerate();
-        let mut body = rest.take_while(|(_, t)| !Block::closed_by(t.kind).is_some_and(Block::is_pou));
+        let mut body = rest.take_while(|(_, t)| {
+            let opens = matches!(t.kind, Tok::Program | Tok::Function | Tok::FunctionBlock);
+            !opens && !Block::closed_by(t.kind).is_some_and(Block::is_pou)
+        });
         body.any(|(i, t)| t.kind == Tok::Id && t.first && self.is(i, "INITIAL_STEP"))
     }
 

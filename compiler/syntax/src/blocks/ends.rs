@@ -5,7 +5,9 @@ use crate::token::{Tok, Token, word_kind};
 use plcc_diag::codes;
 
 /// How far a misplaced END word looks for the right one.
-const MAX_LOOK: usize = 20_000;
+const MAX_LOOK: usize = 5000;
+/// How many outer constructs one message lists.
+const MAX_LISTED: usize = 5;
 
 impl Blocks<'_, '_> {
     /// An END word of `length` tokens (more than one when it is misspelled) that closes a `block`.
@@ -173,7 +175,10 @@ impl Blocks<'_, '_> {
     fn report_unclosed(&mut self, from: usize, t: Token) {
         let open: Vec<Frame> = self.stack[from..].iter().rev().copied().collect();
         let Some(frame) = open.first() else { return };
-        let ends: Vec<&str> = open.iter().map(|f| f.block.end().describe()).collect();
+        let mut ends: Vec<&str> = open.iter().take(MAX_LISTED).map(|f| f.block.end().describe()).collect();
+        if open.len() > MAX_LISTED {
+            ends.push("...");
+        }
         let (ends, are) = (ends.join(", "), if ends.len() > 1 { "are" } else { "is" });
         if let Some((behind, opener)) = frame.else_if.or(frame.behind_else.map(|e| (e, frame.opener))) {
             self.report.push(
@@ -200,7 +205,7 @@ impl Blocks<'_, '_> {
             .report
             .at(codes::UNCLOSED_BLOCK, opener.start, opener.end, format!("{name} opened here is not closed"))
             .also(self.report.span(ended.start, ended.end), there);
-        for outer in &open[1..] {
+        for outer in open.iter().take(MAX_LISTED).skip(1) {
             let name = outer.opener.text(self.text).to_ascii_uppercase();
             let span = self.report.span(outer.opener.start, outer.opener.end);
             message = message.also(span, format!("this {name} is not closed either"));
@@ -212,7 +217,7 @@ impl Blocks<'_, '_> {
     pub(super) fn split_end(&mut self) -> bool {
         let t = self.peek(0);
         let text = t.text(self.text);
-        if text.len() < 3 || !text[..3].eq_ignore_ascii_case("END") {
+        if !text.get(..3).is_some_and(|t| t.eq_ignore_ascii_case("END")) {
             return false;
         }
         let (length, block) = if text.len() == 3 {

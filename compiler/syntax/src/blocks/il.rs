@@ -48,7 +48,7 @@ impl Blocks<'_, '_> {
             }
             Tok::Id | Tok::Int | Tok::Lit | Tok::Qualified | Tok::Address | Tok::Minus | Tok::Bad => {
                 let mut end = i + 1;
-                while !self.peek(end).first && Block::closed_by(self.peek(end).kind).is_none() {
+                while !self.peek(end).first && Block::closed_by(self.peek(end).kind).is_none() && end < MAX_LOOK {
                     if matches!(self.peek(end).kind, Tok::Semi | Tok::Assign) {
                         // `CAL t(IN := x)` has its `:=` in parentheses.
                         let call = listed(&["CAL", "CALC", "CALCN"], word.text(self.text));
