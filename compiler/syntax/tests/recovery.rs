@@ -109,6 +109,19 @@ fn missing_words() {
 }
 
 #[test]
+fn misspelled_words() {
+    let tree = check("IF a THNE x := 1; END_IF;", &["2 E0125"]);
+    assert!(tree.contains("IF a\n      assign x := 1"), "{tree}");
+    check("IF a THEN\n x := 1;\nESLE\n x := 2;\nEND_IF;", &["4 E0125"]);
+    check("IF a THEN\n x := 1;\nEDN_IF;\ny := 1;", &["4 E0125"]);
+    check("VAR_INPTU\n x : INT;\nEND_VAR\ny := 1;", &["2 E0125"]);
+    check("IF a\n then1 := 1;\nEND_IF;", &["2 E0115"]);
+    check("FOR i := 1 TO 5 OD x := 1; END_FOR;", &["2 E0125"]);
+    // A variable's own name is no mistake.
+    check("thne := 1;\nesle := 2;", &[]);
+}
+
+#[test]
 fn missing_parentheses() {
     let tree = check("x := (a + b;\ny := 1;", &["2 E0115"]);
     assert!(tree.contains("assign x := (a + b)"), "{tree}");
@@ -206,6 +219,24 @@ fn configurations() {
     assert_eq!(messages, ["3 E0114", "5 E0115"]);
     assert!(tree.contains("PROGRAM P WITH T : Main()") && tree.contains("PROGRAM Q WITH T : Main()"), "{tree}");
     assert_eq!(parse("CONFIGURATION C\nRESOURCE R ON PLC\nPROGRAM P : Main;\nEND_CONFIGURATION\n").0, ["2 E0101"]);
+}
+
+#[test]
+fn the_pages_of_the_syntax_codes_show_their_mistake() {
+    let mut checked = 0;
+    for code in plcc_diag::codes::ALL {
+        let info = code.info();
+        let Some(example) = info.page.split("```st\n").nth(1).and_then(|p| p.split("```").next()) else { continue };
+        if !["E01", "H01"].contains(&&info.code[..3]) {
+            continue;
+        }
+        let mut diags = Diagnostics::new();
+        parse_file(plcc_diag::FileId(0), example, Profile::Strict, &mut diags);
+        let found: Vec<_> = diags.iter().map(|d| d.code.to_string()).collect();
+        assert_eq!(found, [info.code], "{example}");
+        checked += 1;
+    }
+    assert!(checked > 20, "{checked}");
 }
 
 #[test]
