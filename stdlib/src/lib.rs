@@ -8,6 +8,7 @@ pub mod emit;
 pub mod fault;
 pub mod fold;
 pub mod funcs;
+pub mod literal;
 pub mod ops;
 pub mod prim;
 pub mod region;

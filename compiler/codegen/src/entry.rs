@@ -111,50 +111,43 @@ impl Maker<'_> {
         self.export("plc_app_init", &[types::I64, types::I32], None, |module, b, args| {
             let [mem, cold] = [args[0], args[1]];
             let config = module.target_config();
-            let [table, end] = {
-                let [cold_table, warm_table, bytes] = [cold_table, warm_table, bytes].map(|d| address(module, b, d));
-                let table = b.ins().select(cold, cold_table, warm_table);
-                let rows = counts.map(|n| b.ins().iconst(types::I64, n * INIT_ROW));
-                let size = b.ins().select(cold, rows[0], rows[1]);
-                let end = b.ins().iadd(table, size);
-                let (head, body, clear, copy, next, done) = (
-                    b.create_block(),
-                    b.create_block(),
-                    b.create_block(),
-                    b.create_block(),
-                    b.create_block(),
-                    b.create_block(),
-                );
-                let row = b.append_block_param(head, types::I64);
-                b.ins().jump(head, &[table.into()]);
-                b.switch_to_block(head);
-                let more = b.ins().icmp(IntCC::UnsignedLessThan, row, end);
-                b.ins().brif(more, body, &[], done, &[]);
-                b.switch_to_block(body);
-                // The tables are the target's own data, not the region: native byte order.
-                let flags = ir::MemFlagsData::trusted();
-                let [offset, length, source] = [0, 4, 8].map(|at| {
-                    let field = b.ins().load(types::I32, flags, row, at);
-                    b.ins().uextend(types::I64, field)
-                });
-                let to = b.ins().iadd(mem, offset);
-                let zeros = b.ins().icmp_imm_u(IntCC::Equal, source, i64::from(ZEROS));
-                b.ins().brif(zeros, clear, &[], copy, &[]);
-                b.switch_to_block(clear);
-                let zero = b.ins().iconst(types::I8, 0);
-                b.call_memset(config, to, zero, length);
-                b.ins().jump(next, &[]);
-                b.switch_to_block(copy);
-                let from = b.ins().iadd(bytes, source);
-                b.call_memcpy(config, to, from, length);
-                b.ins().jump(next, &[]);
-                b.switch_to_block(next);
-                let following = b.ins().iadd_imm_u(row, INIT_ROW);
-                b.ins().jump(head, &[following.into()]);
-                b.switch_to_block(done);
-                [table, end]
-            };
-            let _ = (table, end);
+            let [cold_table, warm_table, bytes] = [cold_table, warm_table, bytes].map(|d| address(module, b, d));
+            let table = b.ins().select(cold, cold_table, warm_table);
+            let sizes = counts.map(|n| b.ins().iconst(types::I64, n * INIT_ROW));
+            let size = b.ins().select(cold, sizes[0], sizes[1]);
+            let end = b.ins().iadd(table, size);
+            let [head, body, clear, copy, next, done] = [(); 6].map(|()| b.create_block());
+            let row = b.append_block_param(head, types::I64);
+            b.ins().jump(head, &[table.into()]);
+
+            b.switch_to_block(head);
+            let more = b.ins().icmp(IntCC::UnsignedLessThan, row, end);
+            b.ins().brif(more, body, &[], done, &[]);
+
+            b.switch_to_block(body);
+            let [offset, length, source] = [0, 4, 8].map(|at| {
+                let field = b.ins().load(types::I32, memory(), row, at);
+                b.ins().uextend(types::I64, field)
+            });
+            let to = b.ins().iadd(mem, offset);
+            let zeros = b.ins().icmp_imm_u(IntCC::Equal, source, i64::from(ZEROS));
+            b.ins().brif(zeros, clear, &[], copy, &[]);
+
+            b.switch_to_block(clear);
+            let zero = b.ins().iconst(types::I8, 0);
+            b.call_memset(config, to, zero, length);
+            b.ins().jump(next, &[]);
+
+            b.switch_to_block(copy);
+            let from = b.ins().iadd(bytes, source);
+            b.call_memcpy(config, to, from, length);
+            b.ins().jump(next, &[]);
+
+            b.switch_to_block(next);
+            let following = b.ins().iadd_imm_u(row, INIT_ROW);
+            b.ins().jump(head, &[following.into()]);
+
+            b.switch_to_block(done);
             None
         })
     }
@@ -263,7 +256,7 @@ fn address(module: &dyn Module, b: &mut FunctionBuilder, data: DataId) -> Value 
     b.ins().symbol_value(types::I64, global)
 }
 
-/// Rows (offset, length, source) in the byte order of this machine's target; the bytes go behind those already there.
+/// Rows (offset, length, source), little-endian like the region; the bytes go behind those already there.
 fn init_rows(steps: &[InitStep], bytes: &mut Vec<u8>) -> Result<Vec<u8>, CodegenError> {
     let mut rows = Vec::with_capacity(steps.len() * INIT_ROW as usize);
     for step in steps {
@@ -279,7 +272,7 @@ fn init_rows(steps: &[InitStep], bytes: &mut Vec<u8>) -> Result<Vec<u8>, Codegen
             }
         };
         for field in [step.offset, step.length, source] {
-            put32(&mut rows, field, false);
+            rows.extend(field.to_le_bytes());
         }
     }
     Ok(rows)
@@ -304,18 +297,7 @@ fn put16(to: &mut Vec<u8>, value: u16, big: bool) {
 /// Binary search for a path in the table; leaves with the row or NULL.
 fn search(b: &mut FunctionBuilder, path: Value, table: Value, count: i64) {
     let flags = ir::MemFlagsData::trusted();
-    let (head, probe, compare, differ, equal, lower, upper, found, next, none) = (
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-        b.create_block(),
-    );
+    let [head, probe, compare, differ, equal, lower, upper, found, next, none] = [(); 10].map(|()| b.create_block());
     let (low, high) = (b.append_block_param(head, types::I64), b.append_block_param(head, types::I64));
     let at = b.append_block_param(compare, types::I64);
     let zero = b.ins().iconst(types::I64, 0);

@@ -492,7 +492,8 @@ impl<'a, 'f> Translator<'a, 'f> {
 
 /// The signature of a body of the standard library.
 pub fn rt_signature(func: &RtFn, isa: &dyn cranelift_codegen::isa::TargetIsa, call_conv: CallConv) -> Signature {
-    let param = |repr: Repr| AbiParam { extension: crate::target::c_extension(isa, repr), ..AbiParam::new(clif_type(repr)) };
+    let param =
+        |repr: Repr| AbiParam { extension: crate::target::c_extension(isa, repr), ..AbiParam::new(clif_type(repr)) };
     let mut signature = Signature::new(call_conv);
     signature.params.extend(func.params.iter().map(|r| param(*r)));
     signature.returns.push(AbiParam::new(clif_type(func.result)));

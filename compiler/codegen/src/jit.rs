@@ -49,8 +49,9 @@ pub fn compile(program: &Program) -> Result<JitCode, CodegenError> {
             let init = module.get_finalized_function(entries.init);
             let scan = module.get_finalized_function(entries.scan);
             // SAFETY: `entry` gave both functions these C signatures, and the module lives as long as the pointers.
-            let (init, scan) =
-                unsafe { (std::mem::transmute::<*const u8, InitFn>(init), std::mem::transmute::<*const u8, ScanFn>(scan)) };
+            let (init, scan) = unsafe {
+                (std::mem::transmute::<*const u8, InitFn>(init), std::mem::transmute::<*const u8, ScanFn>(scan))
+            };
             Ok(JitCode {
                 init,
                 scan,

@@ -43,7 +43,11 @@ pub struct Declared<'a> {
 }
 
 /// Declares everything and defines the data.
-pub fn declare<'a>(module: &mut dyn Module, program: &'a Program, extras: Extras) -> Result<Declared<'a>, CodegenError> {
+pub fn declare<'a>(
+    module: &mut dyn Module,
+    program: &'a Program,
+    extras: Extras,
+) -> Result<Declared<'a>, CodegenError> {
     let config = module.target_config();
     let shapes = shapes(program);
     let mut ids = IndexVec::with_capacity(program.funcs.len());

@@ -67,9 +67,7 @@ impl Translator<'_, '_> {
                 let low = if bit == 0 { value } else { self.b.ins().ushr_imm_u(value, i64::from(bit)) };
                 self.b.ins().band_imm_u(low, 1)
             }
-            None if normalise => {
-                self.b.ins().icmp_imm_u(cranelift_codegen::ir::condcodes::IntCC::NotEqual, value, 0)
-            }
+            None if normalise => self.b.ins().icmp_imm_u(cranelift_codegen::ir::condcodes::IntCC::NotEqual, value, 0),
             None => value,
         }
     }

@@ -37,11 +37,51 @@ fn edges(repr: Repr) -> Vec<u64> {
         return list;
     }
     let values = [
-        0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.5, 0.1, 0.49999999999999994, 4.9e-324, 1e-40, 1e10, 1e20, 1e38, 1e39, 1e300,
-        126.5, 127.0, 127.5, 128.0, 255.0, 255.5, 256.0, 32767.0, 32767.9, 32768.0, 65535.0, 65536.0, 8388609.0,
-        16777217.0, 2147483520.0, 2147483647.0, 2147483648.0, 4294967295.0, 4294967296.0, 4503599627370497.5,
-        9007199254740993.0, 9.223372036854775e18, 9.223372036854775807e18, 1.8446744073709550e19,
-        1.8446744073709551615e19, f64::MAX, f64::MIN_POSITIVE, f64::INFINITY, f64::NAN,
+        0.0,
+        0.5,
+        1.0,
+        1.5,
+        2.0,
+        2.5,
+        3.5,
+        0.1,
+        0.49999999999999994,
+        4.9e-324,
+        1e-40,
+        1e10,
+        1e20,
+        1e38,
+        1e39,
+        1e300,
+        126.5,
+        127.0,
+        127.5,
+        128.0,
+        255.0,
+        255.5,
+        256.0,
+        32767.0,
+        32767.9,
+        32768.0,
+        65535.0,
+        65536.0,
+        8388609.0,
+        16777217.0,
+        2147483520.0,
+        2147483647.0,
+        2147483648.0,
+        4294967295.0,
+        4294967296.0,
+        4503599627370497.5,
+        9007199254740993.0,
+        9.223372036854775e18,
+        9.223372036854776e18,
+        1.844674407370955e19,
+        1.8446744073709552e19,
+        f64::MAX,
+        f64::MIN_POSITIVE,
+        f64::INFINITY,
+        f64::NAN,
     ];
     let both = values.iter().flat_map(|v| [*v, -*v]);
     let mut list: Vec<u64> =
@@ -137,5 +177,17 @@ fn second_operand_constant() {
         for a in edges(*repr) {
             check(&mut engines, n as u32, *op, *repr, &[a, *raw]);
         }
+    }
+}
+
+#[test]
+fn every_target_knows_every_operation() {
+    let cases = all_ops().into_iter().flat_map(|op| Repr::ALL.map(|r| (op, r))).filter(|(op, r)| op.accepts(*r));
+    let funcs: Vec<Func> = cases.map(|(op, repr)| func(op, repr, None)).collect();
+    let count = funcs.len();
+    let program = program(funcs, count);
+    for triple in ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "riscv64gc-unknown-linux-gnu"] {
+        let options = plcc_codegen::object::ObjectOptions { triple: Some(triple), ..Default::default() };
+        plcc_codegen::object::compile(&program, options).expect(triple);
     }
 }

@@ -1,12 +1,12 @@
 //! Literals: their text against the type that their prefix or place gives (semantics.md \[L4\] \[L5\] \[T3\]). How text is read stands
-//! in `stdlib::value`, once for sources, stimulus and trace.
+//! in `stdlib::literal`, once for sources, stimulus and trace.
 
 use crate::body::*;
 use crate::expr::*;
 use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::{Elem, Family};
-use plcc_stdlib::value;
+use plcc_stdlib::literal::{self as text, LiteralError, Nul};
 use plcc_syntax::ast::{Literal, LiteralKind, Name};
 
 impl Checker<'_, '_> {
@@ -28,19 +28,19 @@ impl Checker<'_, '_> {
                 let ty = self.cx.defs.types.intern(Type::Null);
                 Operand::value(ExprKind::Const(0), ty, span)
             }
-            LiteralKind::Integer | LiteralKind::Based => match value::parse_integer(&literal.text) {
+            LiteralKind::Integer | LiteralKind::Based => match text::integer(&literal.text) {
                 Ok(v) => self.typed(Operand::Int(v), typed, span),
-                Err(e) => self.bad(e.to_string(), span),
+                Err(e) => self.bad(&e, span),
             },
-            LiteralKind::Real => match value::parse_real(&literal.text) {
-                Ok(v) => self.typed(Operand::Real(v), typed, span),
-                Err(e) => self.bad(e.to_string(), span),
+            LiteralKind::Real => match text::real(Elem::Lreal, &literal.text) {
+                Ok(raw) => self.typed(Operand::Real(f64::from_bits(raw)), typed, span),
+                Err(e) => self.bad(&e, span),
             },
             LiteralKind::Duration | LiteralKind::Date => {
                 let Some(elem) = typed.and_then(|t| self.elem_of(t)) else { return Operand::Error };
-                match value::parse_elem(elem, &literal.text) {
+                match text::parse(elem, &literal.text) {
                     Ok(raw) => Operand::value(ExprKind::Const(raw), Types::elem(elem), span),
-                    Err(e) => self.bad(e.to_string(), span),
+                    Err(e) => self.bad(&e, span),
                 }
             }
             LiteralKind::String | LiteralKind::WString => self.string(literal, typed, span, want),
@@ -86,24 +86,24 @@ impl Checker<'_, '_> {
         if expr.ty == Types::ERROR { Operand::Error } else { Operand::Value { expr, ty } }
     }
 
-    fn bad(&mut self, message: String, span: Span) -> Operand {
-        self.report(Diagnostic::new(codes::BAD_LITERAL, span, message));
+    fn bad(&mut self, error: &LiteralError, span: Span) -> Operand {
+        self.report(Diagnostic::new(codes::LITERAL_VALUE, span, error.to_string()).help_if(error.help()));
         Operand::Error
     }
 
     fn string(&mut self, literal: &Literal, typed: Option<TypeId>, span: Span, want: Option<TypeId>) -> Operand {
         let wide = literal.kind == LiteralKind::WString;
-        let codesys = self.codesys(span);
+        let nul = if self.codesys(span) { Nul::Ends } else { Nul::Error };
         let place = typed.or(want).and_then(|t| self.elem_of(t)).filter(|e| e.family() == Family::Char);
         let (units, kind) = if wide {
-            match value::parse_wstring(&literal.text, codesys) {
+            match text::wstring(&literal.text, nul) {
                 Ok(s) => (s.clone(), ExprKind::WString(s)),
-                Err(e) => return self.bad(e.to_string(), span),
+                Err(e) => return self.bad(&e, span),
             }
         } else {
-            match value::parse_string(&literal.text, codesys) {
+            match text::string(&literal.text, nul) {
                 Ok(s) => (s.iter().map(|b| u16::from(*b)).collect(), ExprKind::String(s)),
-                Err(e) => return self.bad(e.to_string(), span),
+                Err(e) => return self.bad(&e, span),
             }
         };
         if let (Some(elem), [one]) = (place, units.as_slice()) {

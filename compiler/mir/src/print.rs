@@ -270,3 +270,79 @@ fn op_name(debug: &str) -> String {
     }
     name
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::Builder;
+    use crate::ir::IndexTerm;
+    use plcc_diag::{FileId, Span};
+    use plcc_stdlib::fault::Fault;
+    use plcc_stdlib::prim::{PrimOp, Repr};
+
+    #[test]
+    fn names_checks_and_calls() {
+        let mut b = Builder::new("Main", &[Repr::I16], Some(Repr::I16), true);
+        let x = b.params()[0];
+        let i = b.op(PrimOp::Sext(Repr::I64), Repr::I16, &[x]);
+        b.check_within(i, 1, 4, Fault::IndexOutOfBounds);
+        let index = vec![IndexTerm { value: i, stride: 2, low: 1, high: 4 }];
+        let element = Place { base: Base::Region, offset: 62, index, bit: None };
+        let old = b.load(Repr::I16, element.clone(), false);
+        let half = b.number(Repr::F32, u64::from(0.5f32.to_bits()));
+        b.store(Place::new(Base::Instance, 4), half);
+        b.store(Place { bit: Some(3), ..Place::new(Base::Region, 90) }, half);
+        b.store(Place::new(Base::Frame, 8), old);
+        let less = b.op(PrimOp::LtS, Repr::I16, &[old, x]);
+        let (status, _) = (b.call_catching(FuncId::from_raw(0), Some(element), &[x], None).1, ());
+        b.poll();
+        let (then, join) = (b.block(), b.block());
+        b.branch(less, then, join);
+        b.switch_to(then);
+        b.switch(status, &[(1, join), (u64::from(u32::MAX), join)], then);
+        b.switch_to(join);
+        b.ret(Some(old));
+        let mut func = b.finish(16);
+        func.names = vec![
+            (Base::Region, 64, "Main.a".into()),
+            (Base::Region, 88, "flags".into()),
+            (Base::Instance, 0, "t".into()),
+        ];
+        let mut program = Program { region_bytes: 256, frame_base: 128, retain: vec![(64, 8)], ..Program::default() };
+        program.tasks.push(program.funcs.push(func));
+        let source = |what: &str, inlined_at| Source {
+            span: Span::new(FileId(0), 7, 9),
+            pou: "Main".into(),
+            what: what.into(),
+            inlined_at,
+        };
+        program.sources.push(source("a", Some(SourceId::from_raw(1))));
+        program.sources.push(source("", None));
+        let position = |s: &Source| Some(format!("main.st:{}", s.span.start));
+        let want = "\
+region 256 bytes, frames from 128
+tasks: f0 `Main`
+retain 64: 8 bytes
+
+func f0 `Main` (i16) -> i16, instance, frame 16 bytes
+b0(v0: i16):
+    v1 = sext_i64 i16 v0
+    check 1 <= v1 <= 4 else index out of bounds of `a`           ; main.st:7 in the call at main.st:7
+    v2 = load i16 Main.a[v1]
+    v3 = f32 0.5
+    store f32 t+4 := v3
+    store f32 flags+2.%X3 := v3
+    store i16 frame+8 := v2
+    v4 = lt_s i16 v2, v0
+    call f0 `Main`(v0) on Main.a[v1] catching v5                 ; main.st:7 in the call at main.st:7
+    poll deadline                                                ; main.st:7 in the call at main.st:7
+    if v4 then b1 else b2
+b1:
+    case v5, 1: b2, -1: b2, else b1
+b2:
+    return v2
+";
+        let got = super::program(&program, Some(&position));
+        assert_eq!(got, want, "\n{got}");
+    }
+}

@@ -7,8 +7,6 @@
 mod decode;
 mod exec;
 mod op;
-#[cfg(test)]
-mod tests;
 
 use crate::ir::{FuncId, Program};
 use op::Code;
@@ -128,4 +126,20 @@ fn without(range: Range<u32>, kept: &[(u32, u32)]) -> Vec<Range<u32>> {
         parts.push(at..range.end);
     }
     parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kept_ranges_are_cut_out() {
+        let kept = [(10, 5), (15, 5), (30, 10)];
+        assert_eq!(without(0..50, &kept), [0..10, 20..30, 40..50]);
+        assert_eq!(without(12..35, &kept), vec![20..30; 1]);
+        assert_eq!(without(10..20, &kept), []);
+        assert_eq!(without(40..40, &kept), []);
+        assert_eq!(without(35..41, &kept), vec![40..41; 1]);
+        assert_eq!(without(3..8, &[]), vec![3..8; 1]);
+    }
 }
