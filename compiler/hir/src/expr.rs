@@ -518,6 +518,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                         let mask = self.cx.defs.enums[*id].base.repr().mask();
                         Operand::value(ExprKind::Const(*number as u64 & mask), ty, name.span)
                     }
+                    _ if !self.cx.first_report(self.scope, &format!("value {}", name.text)) => Operand::Error,
                     _ => {
                         let names: Vec<String> = values
                             .iter()
