@@ -54,7 +54,10 @@ fn the_tank_runs_as_the_readme_says() {
     let trace = std::fs::read_to_string(folder.path().join("tank.csv")).expect("the trace");
     let lines: Vec<&str> = trace.lines().collect();
     assert_eq!(lines.len(), 2001);
-    judge("<!-- output: sed -n '1p;1001p;2001p' tank.csv -->", &format!("{}\n{}\n{}\n", lines[0], lines[1000], lines[2000]));
+    judge(
+        "<!-- output: sed -n '1p;1001p;2001p' tank.csv -->",
+        &format!("{}\n{}\n{}\n", lines[0], lines[1000], lines[2000]),
+    );
     // The interpreter and the linked program give the same bytes.
     let interp = [&args[..], &["--engine", "interp"]].concat();
     let interp: Vec<&str> = interp.iter().map(|a| if *a == "tank.csv" { "interp.csv" } else { a }).collect();
@@ -87,7 +90,12 @@ fn the_commands_of_use_it_run() {
         .env("PATH", path)
         .output()
         .expect("a shell");
-    assert!(done.status.success(), "{}\n{}", String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
+    assert!(
+        done.status.success(),
+        "{}\n{}",
+        String::from_utf8_lossy(&done.stdout),
+        String::from_utf8_lossy(&done.stderr)
+    );
 }
 
 #[test]
@@ -102,7 +110,11 @@ fn the_test_command_is_what_ci_runs() {
 #[test]
 fn examples_give_their_traces() {
     for (name, cycles, watch) in [
-        ("tank", "700", "Main.control.step,Main.control.V1,Main.control.V2,Main.control.V3,Main.control.V4,Main.plant.level2"),
+        (
+            "tank",
+            "700",
+            "Main.control.step,Main.control.V1,Main.control.V2,Main.control.V3,Main.control.V4,Main.plant.level2",
+        ),
         ("trip", "240", "Main.boiler.pressure,Main.tripped,Main.burner,Main.first"),
         ("interlock", "200", "Main.drive.left,Main.drive.right,Main.k1.closed,Main.k2.closed,Main.danger"),
     ] {
@@ -114,7 +126,9 @@ fn examples_give_their_traces() {
             flags.extend(["--stimulus", &stimulus]);
         }
         let project = example.join("project.toml").display().to_string();
-        let run = |engine| command(Path::new(PLCC), folder.path(), &[&["run", &project, "--engine", engine], &flags[..]].concat());
+        let run = |engine| {
+            command(Path::new(PLCC), folder.path(), &[&["run", &project, "--engine", engine], &flags[..]].concat())
+        };
         let built = command(Path::new(PLCC), folder.path(), &["build", &project, "-o", "app"]);
         assert_eq!(built.code, 0, "{name}: {}", built.stderr);
         assert!(built.stderr.is_empty(), "{name}: {}", built.stderr);

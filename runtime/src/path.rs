@@ -404,7 +404,8 @@ mod tests {
         let matrix = TypeDesc::Array { dims: vec![(1, 2), (0, 1)], elem: 0, stride: 2 };
         let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
         let block = TypeDesc::Struct { name: "Fb".into(), fields: vec![field("m", 8, 1), field("n", 0, 0)] };
-        let root = |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, constant: false, retain: false };
+        let root =
+            |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, constant: false, retain: false };
         Image {
             configuration: "Conf".into(),
             resource: "Res".into(),

@@ -38,10 +38,12 @@ impl Trace {
         let out: Box<dyn Write> = if path == Path::new("-") {
             Box::new(std::io::stdout())
         } else {
-            let file = std::fs::File::create(path).map_err(|e| format!("cannot write trace `{}`: {e}", path.display()))?;
+            let file =
+                std::fs::File::create(path).map_err(|e| format!("cannot write trace `{}`: {e}", path.display()))?;
             Box::new(file)
         };
-        let mut trace = Self { columns, out: BufWriter::with_capacity(1 << 16, out), line: String::new(), cell: String::new() };
+        let mut trace =
+            Self { columns, out: BufWriter::with_capacity(1 << 16, out), line: String::new(), cell: String::new() };
         trace.line.push_str("cycle");
         for (name, _) in &trace.columns {
             trace.line.push(',');

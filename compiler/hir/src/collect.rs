@@ -258,14 +258,14 @@ fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
 }
 
 fn declare_vars<'a>(cx: &mut Cx<'a>, id: PouId, pou: &'a ast::Pou) {
-    if pou.kind == ast::PouKind::Function {
-        if let Some(result) = &pou.result {
-            let name = pou.name.text.clone();
-            let var = new_var(cx, name.clone(), pou.name.span, Section::Result, Some(id), Some((result, None)));
-            cx.defs.pous[id].result = Some(var);
-            cx.defs.pous[id].vars.push(var);
-            cx.pou_slots[id].scope.insert(fold(&name), Local::Var(var));
-        }
+    if pou.kind == ast::PouKind::Function
+        && let Some(result) = &pou.result
+    {
+        let name = pou.name.text.clone();
+        let var = new_var(cx, name.clone(), pou.name.span, Section::Result, Some(id), Some((result, None)));
+        cx.defs.pous[id].result = Some(var);
+        cx.defs.pous[id].vars.push(var);
+        cx.pou_slots[id].scope.insert(fold(&name), Local::Var(var));
     }
     for section in &pou.sections {
         let place = match section.kind {

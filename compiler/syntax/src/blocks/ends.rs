@@ -99,18 +99,14 @@ impl Blocks<'_, '_> {
     fn after_end(&mut self, block: Block, end: u32) {
         let next = self.peek(0).kind;
         match block {
-            _ if block.is_statement() => {
-                if next != Tok::Semi {
-                    if let Some(t) = self.out.last() {
-                        self.bare_ends.push(*t);
-                    }
-                    self.emit(Token::inserted(Tok::Semi, end));
+            _ if block.is_statement() && next != Tok::Semi => {
+                if let Some(t) = self.out.last() {
+                    self.bare_ends.push(*t);
                 }
+                self.emit(Token::inserted(Tok::Semi, end));
             }
-            Block::Struct | Block::Union => {
-                if !matches!(next, Tok::Semi | Tok::Assign) {
-                    self.emit(Token::inserted(Tok::Semi, end));
-                }
+            Block::Struct | Block::Union if !matches!(next, Tok::Semi | Tok::Assign) => {
+                self.emit(Token::inserted(Tok::Semi, end));
             }
             _ if next == Tok::Semi => self.at += 1,
             _ => {}
