@@ -513,6 +513,7 @@ fn layout_aligns_and_refuses_what_is_too_large() {
     let app = Application { resources: vec![resource], ..Application::default() };
     let error = lower(&test.defs, &app, 0, Checks::ALL, false).expect_err("too large");
     assert_eq!(error.what, "variable `huge`");
+    assert_eq!(super::fits(&test.defs, &app, 0), Err(error));
 }
 
 #[test]
