@@ -72,6 +72,7 @@ fn check(args: &SourceArgs, color: Color) -> Result<u8, Failure> {
     let mut parsed = pipeline::parse(sources, &ids);
     let checked = pipeline::check(&mut parsed, &project);
     report(&parsed, Some(&checked), args.message_format, color)?;
+    pipeline::fits(&checked, &parsed)?;
     if args.message_format == MessageFormat::Human && parsed.diags.iter().next().is_none() {
         eprintln!("no mistakes found");
     }

@@ -92,6 +92,14 @@ pub fn compile(
     Ok(Compiled { program, image })
 }
 
+/// Whether the variables fit into memory, for `check`, which generates no code.
+pub fn fits(checked: &Checked, parsed: &Parsed) -> Result<(), Failure> {
+    match &checked.app {
+        Some(app) => plcc_mir::lower::fits(&checked.defs, app, 0).map_err(|e| too_large(e, &parsed.sources)),
+        None => Ok(()),
+    }
+}
+
 /// The variables do not fit: the one mistake that shows only after checking.
 fn too_large(error: plcc_mir::layout::TooLarge, sources: &SourceMap) -> Failure {
     let place = error.span.map(|s| format!("{}: ", sources.position(s))).unwrap_or_default();
