@@ -1,1 +1,22 @@
-//! .
+//! What runs a compiled program: scan loop, tasks, clock, process image, stimulus, trace, faults.
+//!
+//! It is linked into every program that plcc builds and into plcc itself (for `plcc run`), so that both behave alike. It
+//! knows no compiler crate and no engine: an engine is whatever implements [`engine::Engine`], a program is an
+//! [`image::Image`].
+
+pub mod cli;
+mod clock;
+pub mod engine;
+pub mod entry;
+mod fault;
+pub mod image;
+pub mod path;
+mod process_image;
+pub mod run;
+mod scan;
+mod signals;
+mod stats;
+mod stimulus;
+mod task;
+mod trace;
+mod watchdog;

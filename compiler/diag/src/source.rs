@@ -28,6 +28,18 @@ impl SourceFile {
         let column = self.text[start..end].chars().count() as u32 + 1;
         (line as u32 + 1, column)
     }
+
+    /// The bytes of a line (from 0), its line end included.
+    pub fn line_range(&self, line: usize) -> Option<std::ops::Range<usize>> {
+        let start = *self.line_starts.get(line)? as usize;
+        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |e| *e as usize);
+        Some(start..end)
+    }
+
+    /// How many lines there are.
+    pub fn line_count(&self) -> usize {
+        self.line_starts.len()
+    }
 }
 
 /// All sources of one compilation, by [`FileId`].

@@ -1,1 +1,5 @@
-fn main() {}
+//! The `plcc` program.
+
+fn main() -> std::process::ExitCode {
+    plcc::main()
+}

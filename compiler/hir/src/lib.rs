@@ -1,13 +1,66 @@
-//! The typed, resolved form of a program. Every notation becomes this as early as possible.
+//! The typed, resolved form of a program. Every notation becomes this as early as possible; nothing after it knows ST, IL,
+//! SFC, LD, FBD or XML.
+//!
+//! In: syntax trees of all files. Out: [`Defs`] with checked bodies and the [`Application`]. Memory layout, code and files
+//! are the business of others.
 
+pub mod address;
 pub mod app;
 pub mod body;
+mod body_check;
+mod call;
+mod collect;
+mod config;
+mod constant;
+mod consts;
+mod cx;
+mod cycles;
 pub mod defs;
+mod expr;
 pub mod init;
+mod initial;
+mod literal;
+mod operators;
+mod place;
+pub mod print;
+mod resolve;
+pub mod rules;
+mod std_call;
 pub mod types;
 
 pub use app::Application;
 pub use body::Body;
+pub use config::{DEFAULT_WATCHDOG_NS, Selection, TaskSelection};
+pub use consts::default_scalar;
+pub use cx::{Unit, elem_of, similar, type_name};
+pub use cycles::calls_of;
 pub use defs::*;
 pub use init::Init;
 pub use types::{Type, TypeId, Types};
+
+use plcc_diag::Diagnostics;
+
+/// What checking gives.
+#[derive(Debug)]
+pub struct Checked {
+    /// All declarations and bodies.
+    pub defs: Defs,
+    /// What is to run; `None` after an error or for a library without a PROGRAM.
+    pub app: Option<Application>,
+    /// Errors that profile codesys would not have: if they are all, one closing note says so (semantics.md \[P1\]).
+    pub codesys_only: usize,
+}
+
+/// Checks all files: names, types, bodies, configuration. Messages go to `diags`; checking goes on behind each mistake.
+pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> Checked {
+    let mut cx = cx::Cx::new(units);
+    collect::collect(&mut cx, units);
+    cx.resolve_all();
+    cycles::containment(&mut cx);
+    cx.init_all();
+    body_check::check_all(&mut cx);
+    cycles::recursion(&mut cx);
+    let app = config::configure(&mut cx, units, selection);
+    diags.append(cx.diags);
+    Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }
+}

@@ -1,66 +1,163 @@
-//! Numeric and arithmetic functions (Ed. 3 tables 28 and 29).
+//! Arithmetic, bit and comparison functions (Ed. 2 tables 23 to 26 and 28).
 
-use super::convert::Rounding;
-use super::{IN, IN1_IN2, Param, Ret, Sem, StdFn, Ty, call_real, param, row};
-use crate::elem::{Elem, Generic};
-use crate::ops::Op;
-use crate::rt::math;
+use super::*;
+use crate::ops::{self, Op};
+use crate::prim::Repr;
+use crate::rt::{self, RtFn};
 
-const T28: &str = "IEC 61131-3 Ed. 3, 6.6.2.5.3, table 28";
-const T29: &str = "IEC 61131-3 Ed. 3, 6.6.2.5.4, table 29";
-const EXTENSION: &str = "not in the standard: common among vendors";
-
-const fn numeric(name: &'static str, over: Generic, sem: Sem) -> StdFn {
-    row(name, T28, IN, Ret::Var, sem).over(over)
+/// A library function on REAL or LREAL: each in its own precision (semantics.md \[N1\]).
+fn math(elem: Elem, args: &[Val], e: &mut dyn Emit, single: &'static RtFn, double: &'static RtFn) -> Option<Val> {
+    Some(e.call(if elem == Elem::Real { single } else { double }, args))
 }
 
-const fn rounding(name: &'static str, clause: &'static str, how: Rounding, alone: Option<Elem>) -> StdFn {
-    row(name, clause, IN, Ret::Place { alone }, Sem::Round(how, alone)).over(Generic::Real)
-}
-
-/// A row over libm.
-macro_rules! libm {
-    ($name:literal, $single:ident, $double:ident) => {
-        numeric(
-            $name,
-            Generic::Real,
-            Sem::Formula(|e, elem, args| call_real(e, elem, args, &math::$single, &math::$double)),
-        )
+/// One operation of the operator table.
+macro_rules! op {
+    ($op:ident) => {
+        Meaning::Formula(|t, args, e| Some(ops::emit(Op::$op, t, args, e)))
     };
 }
 
-pub(super) static ROWS: &[StdFn] = &[
-    numeric("ABS", Generic::Num, Sem::Op(Op::Abs)),
-    numeric("SQRT", Generic::Real, Sem::Op(Op::Sqrt)),
-    libm!("LN", LN_F32, LN_F64),
-    libm!("LOG", LOG_F32, LOG_F64),
-    libm!("EXP", EXP_F32, EXP_F64),
-    libm!("SIN", SIN_F32, SIN_F64),
-    libm!("COS", COS_F32, COS_F64),
-    libm!("TAN", TAN_F32, TAN_F64),
-    libm!("ASIN", ASIN_F32, ASIN_F64),
-    libm!("ACOS", ACOS_F32, ACOS_F64),
-    libm!("ATAN", ATAN_F32, ATAN_F64),
-    row(
-        "ATAN2",
-        T28,
-        &[param("Y", Ty::Var), param("X", Ty::Var)],
-        Ret::Var,
-        Sem::Formula(|e, elem, args| call_real(e, elem, args, &math::ATAN2_F32, &math::ATAN2_F64)),
-    )
-    .over(Generic::Real),
-    rounding("TRUNC", "IEC 61131-3 Ed. 3, 6.6.2.5.2, table 22", Rounding::TowardZero, Some(Elem::Dint)),
-    rounding("ROUND", EXTENSION, Rounding::Nearest, None),
-    rounding("CEIL", EXTENSION, Rounding::Up, None),
-    rounding("FLOOR", EXTENSION, Rounding::Down, None),
-    row("ADD", T29, IN1_IN2, Ret::Var, Sem::Op(Op::Add)).over(Generic::Magnitude).extensible(),
-    row("MUL", T29, IN1_IN2, Ret::Var, Sem::Op(Op::Mul)).over(Generic::Num).extensible(),
-    row("SUB", T29, IN1_IN2, Ret::Var, Sem::Op(Op::Sub)).over(Generic::Magnitude),
-    row("DIV", T29, IN1_IN2, Ret::Var, Sem::Op(Op::Div)).over(Generic::Num),
-    row("MOD", T29, IN1_IN2, Ret::Var, Sem::Op(Op::Mod)).over(Generic::Int),
-    row("EXPT", T29, BASE_EXPONENT, Ret::Var, Sem::Op(Op::Power)).over(Generic::Real),
-    row("MOVE", T29, IN, Ret::Var, Sem::Formula(|_, _, args| args[0])).over(Generic::Any),
-];
+macro_rules! math {
+    ($single:ident, $double:ident) => {
+        Meaning::Formula(|t, args, e| math(t, args, e, &rt::math::$single, &rt::math::$double))
+    };
+}
 
-/// An integer base becomes REAL or LREAL (semantics.md \[T5\]), by the conversion into the type variable.
-const BASE_EXPONENT: &[Param] = &[param("IN1", Ty::Var), param("IN2", Ty::Num)];
+/// Every neighbouring pair of arguments must hold.
+fn chain(op: Op, t: Elem, args: &[Val], e: &mut dyn Emit) -> Option<Val> {
+    let mut all = None;
+    for pair in args.windows(2) {
+        let holds = ops::emit(op, t, pair, e);
+        all = Some(match all {
+            Some(before) => e.prim(PrimOp::And, Repr::I8, &[before, holds]),
+            None => holds,
+        });
+    }
+    all
+}
+
+macro_rules! compare {
+    ($op:ident) => {
+        Meaning::Compare(Operator::$op, |t, args, e| chain(Op::$op, t, args, e))
+    };
+}
+
+pub(super) fn rows() -> Vec<StdFn> {
+    use Generic::*;
+    use Type::*;
+    let one = [("IN", Var)];
+    let two = [("IN1", Var), ("IN2", Var)];
+    let shift = [("IN", Var), ("N", Integer)];
+    let unary = "Ed. 2 table 23";
+    let arithmetic = "Ed. 2 table 24";
+    let mut rows = vec![
+        row("ABS", unary, Num, &one, op!(Abs), "The absolute value; that of the smallest integer is itself."),
+        row("SQRT", unary, Real, &one, op!(Sqrt), "The square root; NaN for negative numbers."),
+        row("LN", unary, Real, &one, math!(LN_F32, LN_F64), "The natural logarithm."),
+        row("LOG", unary, Real, &one, math!(LOG_F32, LOG_F64), "The logarithm to base 10."),
+        row("EXP", unary, Real, &one, math!(EXP_F32, EXP_F64), "e to the power of IN."),
+        row("SIN", unary, Real, &one, math!(SIN_F32, SIN_F64), "The sine of an angle in radians."),
+        row("COS", unary, Real, &one, math!(COS_F32, COS_F64), "The cosine of an angle in radians."),
+        row("TAN", unary, Real, &one, math!(TAN_F32, TAN_F64), "The tangent of an angle in radians."),
+        row("ASIN", unary, Real, &one, math!(ASIN_F32, ASIN_F64), "The arc sine, -pi/2 to pi/2."),
+        row("ACOS", unary, Real, &one, math!(ACOS_F32, ACOS_F64), "The arc cosine, 0 to pi."),
+        row("ATAN", unary, Real, &one, math!(ATAN_F32, ATAN_F64), "The arc tangent, -pi/2 to pi/2."),
+        row(
+            "ATAN2",
+            "Ed. 3 table 28",
+            Real,
+            &[("Y", Var), ("X", Var)],
+            math!(ATAN2_F32, ATAN2_F64),
+            "The angle of the point (X, Y), -pi to pi.",
+        ),
+        row(
+            "TRUNC",
+            "Ed. 2 table 22",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FTrunc),
+            "The integral part, toward zero.",
+        )
+        .gives(IntegerOfPlace),
+        row(
+            "ROUND",
+            "common extension",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FNearest),
+            "The nearest integer, ties to even.",
+        )
+        .gives(IntegerOfPlace),
+        row(
+            "CEIL",
+            "common extension",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FCeil),
+            "The smallest integer not below IN.",
+        )
+        .gives(IntegerOfPlace),
+        row(
+            "FLOOR",
+            "common extension",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FFloor),
+            "The greatest integer not above IN.",
+        )
+        .gives(IntegerOfPlace),
+        row("ADD", arithmetic, Magnitude, &[], Meaning::Operator(Operator::Add), "The sum, left to right.")
+            .extensible(1, 2),
+        row("MUL", arithmetic, Magnitude, &[], Meaning::Operator(Operator::Mul), "The product, left to right.")
+            .extensible(1, 2),
+        row("SUB", arithmetic, Magnitude, &two, Meaning::Operator(Operator::Sub), "IN1 - IN2."),
+        row("DIV", arithmetic, Magnitude, &two, Meaning::Operator(Operator::Div), "IN1 / IN2; integers toward zero."),
+        row(
+            "MOD",
+            arithmetic,
+            Int,
+            &two,
+            Meaning::Operator(Operator::Mod),
+            "The remainder of IN1 / IN2, with the sign of IN1.",
+        ),
+        row("EXPT", arithmetic, Num, &two, Meaning::Operator(Operator::Power), "IN1 to the power of IN2."),
+        row("MOVE", arithmetic, Any, &one, Meaning::Move, "IN itself."),
+        row("SHL", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Shl), "IN shifted left by N bits, filled with 0."),
+        row(
+            "SHR",
+            "Ed. 2 table 25",
+            Bit,
+            &shift,
+            Meaning::Shift(Op::Shr),
+            "IN shifted right by N bits, filled with 0.",
+        ),
+        row("ROL", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Rol), "IN rotated left by N bits."),
+        row("ROR", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Ror), "IN rotated right by N bits."),
+        row("AND", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::And), "Bitwise AND.").extensible(1, 2),
+        row("OR", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::Or), "Bitwise OR.").extensible(1, 2),
+        row("XOR", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::Xor), "Bitwise exclusive OR.")
+            .extensible(1, 2),
+        row("NOT", "Ed. 2 table 26", Bit, &one, Meaning::Operator(Operator::Not), "Bitwise complement."),
+    ];
+    for (name, meaning, doc) in [
+        ("GT", compare!(Gt), "TRUE if the arguments fall."),
+        ("GE", compare!(Ge), "TRUE if the arguments do not rise."),
+        ("EQ", compare!(Eq), "TRUE if all arguments are equal."),
+        ("LE", compare!(Le), "TRUE if the arguments do not fall."),
+        ("LT", compare!(Lt), "TRUE if the arguments rise."),
+    ] {
+        let row = row(name, "Ed. 2 table 28", Elementary, &[], meaning, doc);
+        rows.push(row.extensible(1, 2).gives(Fixed(Elem::Bool)));
+    }
+    for (name, formula) in [
+        ("$TRUNC", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FTrunc, t.repr(), a)))),
+        ("$NEAREST", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FNearest, t.repr(), a)))),
+        ("$CEIL", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FCeil, t.repr(), a)))),
+        ("$FLOOR", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FFloor, t.repr(), a)))),
+    ] {
+        rows.push(row(name, "", Real, &one, formula, "Rounds to an integral real."));
+    }
+    let ne = row("NE", "Ed. 2 table 28", Elementary, &two, compare!(Ne), "TRUE if the arguments differ.");
+    rows.push(ne.gives(Fixed(Elem::Bool)));
+    rows
+}

@@ -1,49 +1,72 @@
-//! Selection functions (Ed. 3 table 32).
+//! Selection functions (Ed. 2 table 27).
 
-use super::{IN1_IN2, Ret, Sem, StdFn, Ty, param, row};
-use crate::elem::{Elem, Generic};
-use crate::emit::{Emit, Val};
+use super::*;
 use crate::ops::{self, Op};
-use crate::prim::{PrimOp, Repr};
+use crate::prim::Repr;
 
-const T32: &str = "IEC 61131-3 Ed. 3, 6.6.2.5.6, table 32";
+/// The least or greatest of all arguments.
+fn fold(op: Op, t: Elem, args: &[Val], e: &mut dyn Emit) -> Option<Val> {
+    let (first, rest) = args.split_first()?;
+    Some(rest.iter().fold(*first, |best, v| ops::emit(op, t, &[best, *v], e)))
+}
 
-pub(super) static ROWS: &[StdFn] = &[
-    row(
-        "SEL",
-        T32,
-        &[param("G", Ty::Fixed(Elem::Bool)), param("IN0", Ty::Var), param("IN1", Ty::Var)],
-        Ret::Var,
-        Sem::Op(Op::Sel),
-    )
-    .over(Generic::Any),
-    row("MAX", T32, IN1_IN2, Ret::Var, Sem::Op(Op::Max)).over(Generic::Elementary).extensible(),
-    row("MIN", T32, IN1_IN2, Ret::Var, Sem::Op(Op::Min)).over(Generic::Elementary).extensible(),
-    row(
-        "LIMIT",
-        T32,
-        &[param("MN", Ty::Var), param("IN", Ty::Var), param("MX", Ty::Var)],
-        Ret::Var,
-        Sem::Formula(|e, elem, args| {
-            let low = ops::emit(Op::Max, elem, &[args[1], args[0]], e);
-            ops::emit(Op::Min, elem, &[low, args[2]], e)
-        }),
-    )
-    .over(Generic::Elementary),
-    row("MUX", T32, &[param("K", Ty::Int), param("IN0", Ty::Var), param("IN1", Ty::Var)], Ret::Var, Sem::Formula(mux))
-        .over(Generic::Any)
-        .extensible(),
-];
-
-/// Input number K, counted from 0; the last one if there is no such input.
-fn mux(e: &mut dyn Emit, elem: Elem, args: &[Val]) -> Val {
-    let (k, inputs) = (args[0], &args[1..]);
-    let last = inputs.len() - 1;
-    let mut chosen = inputs[last];
-    for (n, input) in inputs[..last].iter().enumerate() {
+/// MUX: K outside of the inputs gives the last one (semantics.md \[N1\]).
+fn mux(t: Elem, args: &[Val], e: &mut dyn Emit) -> Option<Val> {
+    let (k, inputs) = args.split_first()?;
+    let (last, others) = inputs.split_last()?;
+    let mut chosen = *last;
+    for (n, input) in others.iter().enumerate().rev() {
         let number = e.constant(Repr::I64, n as u64);
-        let is_it = e.prim(PrimOp::Eq, Repr::I64, &[k, number]);
-        chosen = e.prim(PrimOp::Select, elem.repr(), &[is_it, *input, chosen]);
+        let is = e.prim(PrimOp::Eq, Repr::I64, &[*k, number]);
+        chosen = e.prim(PrimOp::Select, t.repr(), &[is, *input, chosen]);
     }
-    chosen
+    Some(chosen)
+}
+
+pub(super) fn rows() -> Vec<StdFn> {
+    use Generic::*;
+    use Type::*;
+    let clause = "Ed. 2 table 27";
+    let bool = Fixed(Elem::Bool);
+    vec![
+        row(
+            "SEL",
+            clause,
+            Any,
+            &[("G", bool), ("IN0", Var), ("IN1", Var)],
+            Meaning::Formula(|t, args, e| Some(e.prim(PrimOp::Select, t.repr(), &[args[0], args[2], args[1]]))),
+            "IN0 if G is FALSE, IN1 if it is TRUE.",
+        ),
+        row(
+            "MAX",
+            clause,
+            Elementary,
+            &[],
+            Meaning::Formula(|t, a, e| fold(Op::Max, t, a, e)),
+            "The greatest argument.",
+        )
+        .extensible(1, 2),
+        row("MIN", clause, Elementary, &[], Meaning::Formula(|t, a, e| fold(Op::Min, t, a, e)), "The least argument.")
+            .extensible(1, 2),
+        row(
+            "LIMIT",
+            clause,
+            Elementary,
+            &[("MN", Var), ("IN", Var), ("MX", Var)],
+            Meaning::Formula(|t, args, e| {
+                let low = ops::emit(Op::Max, t, &[args[1], args[0]], e);
+                Some(ops::emit(Op::Min, t, &[low, args[2]], e))
+            }),
+            "IN, but at least MN and at most MX.",
+        ),
+        row(
+            "MUX",
+            clause,
+            Any,
+            &[("K", Integer)],
+            Meaning::Formula(mux),
+            "Input number K, from 0; the last one if K is outside.",
+        )
+        .extensible(0, 2),
+    ]
 }

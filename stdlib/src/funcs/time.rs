@@ -1,99 +1,54 @@
-//! Functions of time and date with scalar results (Ed. 3 tables 34 and 35), and the scan clock.
+//! Functions of time and date (Ed. 2 table 30) and the scan clock.
 
-use super::{IN, Param, Ret, Sem, StdFn, Ty, both, param, row};
-use crate::convert::NS_PER_DAY;
-use crate::elem::Elem::{self, *};
-use crate::elem::Generic;
-use crate::emit::{Emit, Val};
-use crate::ops::Op;
-use crate::prim::{PrimOp, Repr};
+use super::*;
+use crate::elem::Elem::*;
+use crate::ops::{self, Op};
 
-const T35: &str = "IEC 61131-3 Ed. 3, 6.6.2.5.11, table 35";
-const T36: &str = "IEC 61131-3 Ed. 3, 6.6.2.5.12, table 36";
-const CLOCK: &str = "not in the standard: the scan clock, constant through a cycle";
-
-/// All times are nanoseconds in 64 bits, so one formula does for each sum.
-const fn sum(name: &'static str, params: &'static [Param], result: Elem) -> StdFn {
-    row(name, T35, params, Ret::Fixed(result), Sem::Formula(|e, _, args| e.prim(PrimOp::Add, Repr::I64, args)))
+fn fixed(name: &str, params: &[(&'static str, Elem)], result: Elem, meaning: Meaning, doc: &'static str) -> StdFn {
+    let params: Vec<(&'static str, Type)> = params.iter().map(|(n, e)| (*n, Type::Fixed(*e))).collect();
+    row(name, "Ed. 2 table 30", Generic::Any, &params, meaning, doc).gives(Type::Fixed(result))
 }
 
-const fn difference(name: &'static str, params: &'static [Param], result: Elem) -> StdFn {
-    row(name, T35, params, Ret::Fixed(result), Sem::Formula(|e, _, args| e.prim(PrimOp::Sub, Repr::I64, args)))
-}
-
-const fn scaled(name: &'static str, params: &'static [Param], result: Elem, op: Op) -> StdFn {
-    row(name, T35, params, Ret::Fixed(result), Sem::Op(op)).over(Generic::Num)
-}
-
-/// Parameters of two fixed types.
-macro_rules! two {
-    ($a:ident, $b:ident) => {
-        &[param("IN1", Ty::Fixed($a)), param("IN2", Ty::Fixed($b))]
-    };
-}
-
-const TIME_NUM: &[Param] = &[param("IN1", Ty::Fixed(Time)), param("IN2", Ty::Var)];
-const LTIME_NUM: &[Param] = &[param("IN1", Ty::Fixed(Ltime)), param("IN2", Ty::Var)];
-
-pub(super) static ROWS: &[StdFn] = &[
-    row("TIME", CLOCK, &[], Ret::Fixed(Time), Sem::Clock),
-    row("LTIME", CLOCK, &[], Ret::Fixed(Ltime), Sem::Clock),
-    sum("ADD_TIME", two!(Time, Time), Time),
-    sum("ADD_LTIME", two!(Ltime, Ltime), Ltime),
-    sum("ADD_TOD_TIME", two!(Tod, Time), Tod),
-    sum("ADD_LTOD_LTIME", two!(Ltod, Ltime), Ltod),
-    sum("ADD_DT_TIME", two!(Dt, Time), Dt),
-    sum("ADD_LDT_LTIME", two!(Ldt, Ltime), Ldt),
-    difference("SUB_TIME", two!(Time, Time), Time),
-    difference("SUB_LTIME", two!(Ltime, Ltime), Ltime),
-    difference("SUB_DATE_DATE", two!(Date, Date), Time),
-    difference("SUB_LDATE_LDATE", two!(Ldate, Ldate), Ltime),
-    difference("SUB_TOD_TIME", two!(Tod, Time), Tod),
-    difference("SUB_LTOD_LTIME", two!(Ltod, Ltime), Ltod),
-    difference("SUB_TOD_TOD", two!(Tod, Tod), Time),
-    difference("SUB_LTOD_LTOD", two!(Ltod, Ltod), Ltime),
-    difference("SUB_DT_TIME", two!(Dt, Time), Dt),
-    difference("SUB_LDT_LTIME", two!(Ldt, Ltime), Ldt),
-    difference("SUB_DT_DT", two!(Dt, Dt), Time),
-    difference("SUB_LDT_LDT", two!(Ldt, Ldt), Ltime),
-    scaled("MULTIME", TIME_NUM, Time, Op::TimeMul),
-    scaled("MUL_TIME", TIME_NUM, Time, Op::TimeMul),
-    scaled("MUL_LTIME", LTIME_NUM, Ltime, Op::TimeMul),
-    scaled("DIVTIME", TIME_NUM, Time, Op::TimeDiv),
-    scaled("DIV_TIME", TIME_NUM, Time, Op::TimeDiv),
-    scaled("DIV_LTIME", LTIME_NUM, Ltime, Op::TimeDiv),
-    concat("CONCAT_DATE_TOD", &[param("DATE", Ty::Fixed(Date)), param("TOD", Ty::Fixed(Tod))], Dt),
-    concat("CONCAT_DATE_LTOD", &[param("DATE", Ty::Fixed(Date)), param("LTOD", Ty::Fixed(Ltod))], Ldt),
-    row("DAY_OF_WEEK", T36, &[param("IN", Ty::Fixed(Date))], Ret::Fixed(Int), Sem::Formula(day_of_week)),
-    row("IS_VALID", "IEC 61131-3 Ed. 3, 6.6.2.5.14, table 38", IN, Ret::Fixed(Bool), Sem::Formula(is_valid))
-        .over(Generic::Real),
-];
-
-const fn concat(name: &'static str, params: &'static [Param], result: Elem) -> StdFn {
-    let sem = Sem::Formula(|e, _, args| e.prim(PrimOp::Add, Repr::I64, args));
-    row(name, T36, params, Ret::Fixed(result), sem)
-}
-
-/// 0 is Sunday; 1970-01-01 was a Thursday.
-fn day_of_week(e: &mut dyn Emit, _: Elem, args: &[Val]) -> Val {
-    let r = Repr::I64;
-    let day = e.constant(r, NS_PER_DAY as u64);
-    let seven = e.constant(r, 7);
-    // Dates lie on midnights: the division is exact, and i64 nanoseconds are less than 2^17 days.
-    let days = e.prim(PrimOp::DivS, r, &[args[0], day]);
-    let shifted = e.constant(r, 4 + 7 * (1 << 17));
-    let days = e.prim(PrimOp::Add, r, &[days, shifted]);
-    let weekday = e.prim(PrimOp::RemS, r, &[days, seven]);
-    e.prim(PrimOp::Wrap(Repr::I16), r, &[weekday])
-}
-
-/// Neither NaN nor infinite.
-fn is_valid(e: &mut dyn Emit, elem: Elem, args: &[Val]) -> Val {
-    let r = elem.repr();
-    let infinity = if r == Repr::F32 { u64::from(f32::INFINITY.to_bits()) } else { f64::INFINITY.to_bits() };
-    let above = e.constant(r, infinity);
-    let below = e.prim(PrimOp::FNeg, r, &[above]);
-    let low = e.prim(PrimOp::FLt, r, &[below, args[0]]);
-    let high = e.prim(PrimOp::FLt, r, &[args[0], above]);
-    both(e, low, high)
+pub(super) fn rows() -> Vec<StdFn> {
+    let add = Meaning::Operator(Operator::Add);
+    let sub = Meaning::Operator(Operator::Sub);
+    // Dates and times are nanoseconds: their sum is that of TIME whatever the types are called.
+    let sum = Meaning::Formula(|_, args, e| Some(ops::emit(Op::Add, Time, args, e)));
+    let clock = Meaning::Formula(|_, _, e| e.clock());
+    let mut rows = vec![
+        fixed("TIME", &[], Time, clock, "The scan clock: the same value all through a scan."),
+        fixed("LTIME", &[], Ltime, clock, "The scan clock: the same value all through a scan."),
+    ];
+    for (t, d, tod, dt, l) in [(Time, Date, Tod, Dt, ""), (Ltime, Ldate, Ltod, Ldt, "L")] {
+        let name = |text: &str| text.replace('@', l);
+        rows.extend([
+            fixed(&name("ADD_@TIME"), &[("IN1", t), ("IN2", t)], t, add, "The sum of two durations."),
+            fixed(&name("SUB_@TIME"), &[("IN1", t), ("IN2", t)], t, sub, "The difference of two durations."),
+            fixed(&name("ADD_@TOD_@TIME"), &[("IN1", tod), ("IN2", t)], tod, add, "A time of day later by IN2."),
+            fixed(&name("ADD_@DT_@TIME"), &[("IN1", dt), ("IN2", t)], dt, add, "A date and time later by IN2."),
+            fixed(&name("SUB_@TOD_@TIME"), &[("IN1", tod), ("IN2", t)], tod, sub, "A time of day earlier by IN2."),
+            fixed(&name("SUB_@DT_@TIME"), &[("IN1", dt), ("IN2", t)], dt, sub, "A date and time earlier by IN2."),
+            fixed(&name("SUB_@DATE_@DATE"), &[("IN1", d), ("IN2", d)], t, sub, "The time from IN2 to IN1."),
+            fixed(&name("SUB_@TOD_@TOD"), &[("IN1", tod), ("IN2", tod)], t, sub, "The time from IN2 to IN1."),
+            fixed(&name("SUB_@DT_@DT"), &[("IN1", dt), ("IN2", dt)], t, sub, "The time from IN2 to IN1."),
+            fixed(
+                &name("CONCAT_@DATE_@TOD"),
+                &[("IN1", d), ("IN2", tod)],
+                dt,
+                sum,
+                "A date and a time of day together.",
+            ),
+        ]);
+        let scaled = |name: String, op, doc| {
+            let params = [("IN1", Type::Fixed(t)), ("IN2", Type::Var)];
+            row(&name, "Ed. 2 table 30", Generic::Num, &params, Meaning::Operator(op), doc).gives(Type::Fixed(t))
+        };
+        let mul = "A duration times a number, to the nearest nanosecond, ties to even.";
+        let div = "A duration divided by a number, to the nearest nanosecond, ties to even.";
+        rows.push(scaled(name("MUL@TIME"), Operator::Mul, mul));
+        rows.push(scaled(name("MUL_@TIME"), Operator::Mul, mul));
+        rows.push(scaled(name("DIV@TIME"), Operator::Div, div));
+        rows.push(scaled(name("DIV_@TIME"), Operator::Div, div));
+    }
+    rows
 }

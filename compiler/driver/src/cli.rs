@@ -1,0 +1,180 @@
+//! The command line (the contract is in docs/cli.md).
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use plcc_runtime::cli::RunFlags;
+use std::path::PathBuf;
+
+/// Ahead-of-time compiler for IEC 61131-3.
+#[derive(Debug, Parser)]
+#[command(name = "plcc", version, about, long_about = None)]
+pub struct Cli {
+    /// When to colour messages.
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    pub color: Color,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// When to colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    /// On a terminal; NO_COLOR and CLICOLOR_FORCE are honoured.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compile to a native executable, or print a stage.
+    Build(BuildArgs),
+    /// Compile and run at once.
+    Run(RunArgs),
+    /// Find mistakes and explain them.
+    Check(CheckArgs),
+    /// Explain a diagnostic code, a standard function or a standard function block.
+    Explain {
+        /// `E0301`, `LIMIT`, `TON`.
+        name: String,
+    },
+    /// Make a small project that builds and runs.
+    New {
+        /// The folder to make; its last part names the project.
+        name: PathBuf,
+    },
+}
+
+/// What is compiled, and how its sources are read.
+#[derive(Debug, Clone, Args)]
+pub struct SourceArgs {
+    /// project.toml, source files (.st .il .sfc .iec .txt), folders or globs.
+    #[arg(required = true, value_name = "project.toml|FILES")]
+    pub files: Vec<String>,
+    /// How strictly sources are read; the project file decides when this is not given.
+    #[arg(long, value_enum)]
+    pub profile: Option<ProfileArg>,
+    /// Which PROGRAM runs when there are several and no CONFIGURATION.
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+    /// How messages are printed.
+    #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
+    pub message_format: MessageFormat,
+}
+
+/// `--profile`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ProfileArg {
+    /// The standard's rules.
+    Strict,
+    /// For existing CODESYS-style libraries.
+    Codesys,
+}
+
+/// `--message-format`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MessageFormat {
+    /// With source lines and help.
+    Human,
+    /// One line each.
+    Short,
+    /// One JSON object a line.
+    Json,
+    /// A SARIF 2.1.0 log.
+    Sarif,
+}
+
+/// How code is generated.
+#[derive(Debug, Clone, Args)]
+pub struct CodeArgs {
+    /// Safety checks: all, none, or a list of index,division,subrange,pointer,deadline.
+    #[arg(long, value_name = "all|none|LIST")]
+    pub checks: Option<String>,
+    /// Optimisation of the generated code.
+    #[arg(long, value_enum, default_value_t = OptArg::Speed)]
+    pub opt: OptArg,
+}
+
+/// `--opt`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OptArg {
+    /// Plain lowering.
+    None,
+    /// For speed.
+    Speed,
+}
+
+/// `plcc build`.
+#[derive(Debug, Args)]
+pub struct BuildArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub code: CodeArgs,
+    /// The executable (or object) to write.
+    #[arg(short, long, value_name = "APP")]
+    pub output: Option<PathBuf>,
+    /// What the code runs on; other than this machine yields an object and a header.
+    #[arg(long, value_name = "TRIPLE")]
+    pub target: Option<String>,
+    /// The runtime archive to link with, for other targets.
+    #[arg(long, value_name = "ARCHIVE")]
+    pub runtime: Option<PathBuf>,
+    /// Print or write a stage instead of linking; several with commas.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "STAGE")]
+    pub emit: Vec<Stage>,
+}
+
+/// `--emit`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)]
+pub enum Stage {
+    Tokens,
+    Ast,
+    Hir,
+    Mir,
+    Clif,
+    Asm,
+    Obj,
+    Header,
+}
+
+/// `plcc run`.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub code: CodeArgs,
+    /// What executes the program.
+    #[arg(long, value_enum, default_value_t = EngineArg::Jit)]
+    pub engine: EngineArg,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub run: RunFlags,
+}
+
+/// `--engine`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EngineArg {
+    /// Machine code, compiled in memory.
+    Jit,
+    /// The reference interpreter.
+    Interp,
+}
+
+/// `plcc check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+}

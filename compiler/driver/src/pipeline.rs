@@ -1,0 +1,137 @@
+//! The pipeline: one line per arrow, from sources to an engine or an executable. docs/architecture.md has the same as a table.
+
+use crate::cli::{CodeArgs, SourceArgs};
+use crate::failure::Failure;
+use crate::project::{self, Project};
+use plcc_diag::{Diagnostics, FileId, SourceMap};
+use plcc_hir::{Application, Checked, Profile, Unit};
+use plcc_mir::ir;
+use plcc_mir::lower::Checks;
+use plcc_runtime::image::Image;
+use plcc_syntax::ast;
+
+/// Sources with their trees.
+pub struct Parsed {
+    /// All texts.
+    pub sources: SourceMap,
+    /// The user's files and the standard function blocks, in order.
+    pub files: Vec<(FileId, Profile, bool, ast::File)>,
+    /// Mistakes so far.
+    pub diags: Diagnostics,
+}
+
+/// A program that can be run or linked.
+pub struct Compiled {
+    /// Code.
+    pub program: ir::Program,
+    /// What the runtime must know.
+    pub image: Image,
+}
+
+/// load: project and paths to texts.
+pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profile)>), Failure> {
+    let project = project::load(args)?;
+    let mut sources = SourceMap::new();
+    let mut ids = Vec::new();
+    for (path, profile) in &project.sources {
+        let text = project::read_source(path)?;
+        ids.push((sources.add(path.display().to_string(), text), *profile));
+    }
+    Ok((project, sources, ids))
+}
+
+/// lex, blocks, parse: texts to trees.
+pub fn parse(mut sources: SourceMap, ids: &[(FileId, Profile)]) -> Parsed {
+    let mut diags = Diagnostics::new();
+    let mut files = Vec::new();
+    for (name, text) in plcc_stdlib::blocks::blocks() {
+        let id = sources.add_builtin(format!("<{name}>"), *text);
+        files.push((id, Profile::Strict, true, plcc_syntax::parse_file(id, text, Profile::Strict, &mut diags)));
+    }
+    for (id, profile) in ids {
+        let text = sources.file(*id).text.clone();
+        files.push((*id, *profile, false, plcc_syntax::parse_file(*id, &text, *profile, &mut diags)));
+    }
+    Parsed { sources, files, diags }
+}
+
+/// collect, check, configure: trees to the typed form.
+pub fn check(parsed: &mut Parsed, project: &Project) -> Checked {
+    let units: Vec<Unit> = parsed
+        .files
+        .iter()
+        .map(|(file, profile, builtin, ast)| Unit { file: *file, ast, profile: *profile, builtin: *builtin })
+        .collect();
+    plcc_hir::check(&units, &project.selection, &mut parsed.diags)
+}
+
+/// layout, lower, verify, optimise, image: the typed form to MIR and what the runtime needs.
+pub fn compile(
+    checked: &Checked,
+    app: &Application,
+    project: &Project,
+    parsed: &Parsed,
+    code: &CodeArgs,
+) -> Result<Compiled, Failure> {
+    let checks = checks(project, code)?;
+    let (program, layout) = plcc_mir::lower::lower(&checked.defs, app, 0, checks, false)
+        .map_err(|e| too_large(e, &parsed.sources))?;
+    let problems = plcc_mir::verify::verify(&program);
+    if !problems.is_empty() {
+        plcc_diag::bug!("the verifier found:\n{}\n{}",
+            problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
+            plcc_mir::print::program(&program, None)
+        );
+    }
+    let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
+    Ok(Compiled { program, image })
+}
+
+/// The variables do not fit: the one mistake that shows only after checking.
+fn too_large(error: plcc_mir::layout::TooLarge, sources: &SourceMap) -> Failure {
+    let place = error.span.map(|s| format!("{}: ", sources.position(s))).unwrap_or_default();
+    let message = format!(
+        "{place}error[{}]: {} needs {} bytes, a resource has less than {}",
+        plcc_diag::codes::TOO_LARGE,
+        error.what,
+        error.bytes,
+        plcc_mir::layout::MAX_REGION_BYTES
+    );
+    Failure { code: 1, message }
+}
+
+/// `--checks`, else `[build] checks`, else all.
+fn checks(project: &Project, code: &CodeArgs) -> Result<Checks, Failure> {
+    let mut checks = Checks::ALL;
+    if let Some(table) = &project.build.checks {
+        checks.index = table.index.unwrap_or(true);
+        checks.division = table.division.unwrap_or(true);
+        checks.subrange = table.subrange.unwrap_or(true);
+        checks.pointer = table.pointer.unwrap_or(true);
+        checks.deadline = table.deadline.unwrap_or(true);
+    }
+    match code.checks.as_deref() {
+        None => {}
+        Some("all") => checks = Checks::ALL,
+        Some("none") => checks = Checks::NONE,
+        Some(list) => {
+            checks = Checks::NONE;
+            for name in list.split(',') {
+                match name.trim() {
+                    "index" => checks.index = true,
+                    "division" => checks.division = true,
+                    "subrange" => checks.subrange = true,
+                    "pointer" => checks.pointer = true,
+                    "deadline" => checks.deadline = true,
+                    other => {
+                        let names = ["index", "division", "subrange", "pointer", "deadline", "all", "none"];
+                        let hint = plcc_hir::similar(other, names.into_iter());
+                        let hint = hint.map(|h| format!("; did you mean `{h}`?")).unwrap_or_default();
+                        return Err(Failure::usage(format!("--checks: there is no check `{other}`{hint}")));
+                    }
+                }
+            }
+        }
+    }
+    Ok(checks)
+}

@@ -1,0 +1,603 @@
+//! Calls of users' POUs: which callee, which argument goes to which parameter (semantics.md \[S4\] \[S5\] \[S6\]).
+
+use crate::body::*;
+use crate::cx::*;
+use crate::defs::*;
+use crate::expr::*;
+use crate::place::Found;
+use crate::rules::{self, Implicit};
+use crate::types::{Type, TypeId, Types};
+use plcc_diag::{Diagnostic, Span, codes};
+use plcc_stdlib::elem::Elem;
+use plcc_syntax::ast;
+use rustc_hash::FxHashMap;
+
+/// What a callee turned out to be.
+pub(crate) enum Target {
+    /// A user's function, instance or action.
+    User(Callee, PouId),
+    /// A standard function by its folded name.
+    Standard(&'static plcc_stdlib::funcs::StdFn),
+    /// `REF`, `ADR`, `SIZEOF` and what else is no function of values.
+    Special(Special),
+    Reported,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Special {
+    /// `REF(x)`, `ADR(x)`.
+    Reference { pointer: bool },
+    /// Known, not built.
+    NotYet(&'static str),
+}
+
+impl<'a> Checker<'_, 'a> {
+    /// A call as an operand: it must give a value.
+    pub fn call_operand(&mut self, call: &'a ast::Call, span: Span, want: Option<TypeId>) -> Operand {
+        match self.callee(call) {
+            Target::Reported => {
+                self.check_arguments_alone(call);
+                Operand::Error
+            }
+            Target::Standard(func) => self.standard_call(func, call, span, want),
+            Target::Special(special) => self.special_call(special, call, span),
+            Target::User(callee, pou) => {
+                let result = self.cx.defs.pous[pou].result;
+                let is_function = matches!(callee, Callee::Function(_));
+                let Some(checked) = self.user_call(callee, pou, call, span) else { return Operand::Error };
+                if !is_function {
+                    let name = self.cx.defs.pous[pou].name.clone();
+                    self.report(
+                        Diagnostic::new(codes::NO_VALUE, span, format!("a call of `{name}` gives no value"))
+                            .help("call it as a statement, then use its outputs"),
+                    );
+                    return Operand::Error;
+                }
+                let ty = match result {
+                    Some(var) => self.type_of_var(var),
+                    None => Types::VOID,
+                };
+                if ty == Types::ERROR {
+                    return Operand::Error;
+                }
+                Operand::value(ExprKind::Call(Box::new(checked)), ty, span)
+            }
+        }
+    }
+
+    /// A call as a statement.
+    pub fn call_statement(&mut self, call: &'a ast::Call, span: Span) -> Option<StmtKind> {
+        match self.callee(call) {
+            Target::Reported => {
+                self.check_arguments_alone(call);
+                None
+            }
+            Target::Standard(func) => match self.standard_call(func, call, span, None) {
+                Operand::Error => None,
+                operand => {
+                    let expr = self.settle(operand, span);
+                    Some(StmtKind::Eval(expr))
+                }
+            },
+            Target::Special(special) => {
+                self.special_call(special, call, span);
+                None
+            }
+            Target::User(callee, pou) => self.user_call(callee, pou, call, span).map(|c| StmtKind::Call(Box::new(c))),
+        }
+    }
+
+    /// Errors inside the arguments of a call that cannot be resolved are still worth a message.
+    fn check_arguments_alone(&mut self, call: &'a ast::Call) {
+        for arg in &call.args {
+            match &arg.kind {
+                ast::ArgKind::Positional(e) | ast::ArgKind::Input(_, Some(e)) => {
+                    self.operand(e, None);
+                }
+                ast::ArgKind::Output { target: Some(e), .. } => {
+                    self.place(e);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn callee(&mut self, call: &'a ast::Call) -> Target {
+        match &call.callee.kind {
+            ast::ExprKind::Name(name) => self.named_callee(name),
+            ast::ExprKind::Member(base, name) => self.member_callee(base, name, &call.callee),
+            ast::ExprKind::Index(..) | ast::ExprKind::Deref(_) => match self.place(&call.callee) {
+                Some(place) => self.instance_callee(place),
+                None => Target::Reported,
+            },
+            ast::ExprKind::Error => Target::Reported,
+            _ => {
+                self.report(
+                    Diagnostic::new(codes::NOT_CALLABLE, call.callee.span, "this cannot be called")
+                        .help("a call names a function, an instance of a function block or an action"),
+                );
+                Target::Reported
+            }
+        }
+    }
+
+    /// In call position the search goes on to something callable (\[L3\]).
+    fn named_callee(&mut self, name: &'a ast::Name) -> Target {
+        let found = self.lookup(name);
+        let key = fold(&name.text);
+        match found {
+            Found::Var(var) => {
+                let ty = self.type_of_var(var);
+                if self.cx.instance_of(ty).is_some() {
+                    let place = Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span };
+                    return self.instance_callee(place);
+                }
+                if ty == Types::ERROR && !self.cx.pous.contains_key(&key) && plcc_stdlib::funcs::find(&key).is_none() {
+                    return Target::Reported;
+                }
+            }
+            Found::Action(action) => return Target::User(Callee::Action(None, action), action),
+            Found::Reported => return Target::Reported,
+            _ => {}
+        }
+        if let Some(&pou) = self.cx.pous.get(&key) {
+            return match self.cx.defs.pous[pou].kind {
+                PouKind::Function => Target::User(Callee::Function(pou), pou),
+                kind => {
+                    let what = if kind == PouKind::Program { "a PROGRAM" } else { "a FUNCTION_BLOCK" };
+                    self.report(
+                        Diagnostic::new(codes::NOT_CALLABLE, name.span, format!("`{}` is {what}", name.text)).help(
+                            match kind {
+                                PouKind::Program => "programs are run by tasks; they cannot be called".to_string(),
+                                _ => format!("declare an instance, `inst : {};`, and call that", name.text),
+                            },
+                        ),
+                    );
+                    Target::Reported
+                }
+            };
+        }
+        match key.as_str() {
+            "REF" => return Target::Special(Special::Reference { pointer: false }),
+            "ADR" => return Target::Special(Special::Reference { pointer: true }),
+            "SIZEOF" => return Target::Special(Special::NotYet("SIZEOF")),
+            "LOWER_BOUND" | "UPPER_BOUND" => return Target::Special(Special::NotYet("LOWER_BOUND and UPPER_BOUND")),
+            _ => {}
+        }
+        if let Some(func) = plcc_stdlib::funcs::find(&key) {
+            return Target::Standard(func);
+        }
+        if let Found::Var(var) = found {
+            let ty = self.cx.type_name(self.cx.defs.vars[var].ty);
+            self.report(
+                Diagnostic::new(codes::NOT_CALLABLE, name.span, format!("`{}` is a variable of type {ty}", name.text))
+                    .help("only functions, instances of function blocks and actions can be called"),
+            );
+            return Target::Reported;
+        }
+        if !self.cx.first_report(self.scope, &name.text) {
+            return Target::Reported;
+        }
+        let pous = self.cx.pous.iter().filter(|(_, p)| self.cx.defs.pous[**p].kind == PouKind::Function);
+        let mut names: Vec<&str> = pous.map(|(n, _)| n.as_str()).collect();
+        for name in plcc_stdlib::funcs::names() {
+            names.push(name);
+        }
+        if let Some(scope) = self.scope {
+            names.extend(self.cx.pou_slots[scope].scope.keys().map(|k| k.as_str()));
+        }
+        let hint = similar(&name.text, names.into_iter());
+        self.report(
+            Diagnostic::new(
+                codes::UNKNOWN_FUNCTION,
+                name.span,
+                format!("there is no function or instance `{}`", name.text),
+            )
+            .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
+        );
+        Target::Reported
+    }
+
+    fn instance_callee(&mut self, place: Place) -> Target {
+        match *self.cx.defs.types.get(place.ty) {
+            Type::Instance(pou) => Target::User(Callee::Instance(place, pou), pou),
+            Type::Error => Target::Reported,
+            _ => {
+                let ty = self.cx.type_name(place.ty);
+                self.report(
+                    Diagnostic::new(codes::NOT_CALLABLE, place.span, format!("{ty} cannot be called"))
+                        .help("only functions, instances of function blocks and actions can be called"),
+                );
+                Target::Reported
+            }
+        }
+    }
+
+    /// `fb.act()` or `fb.inner()`.
+    fn member_callee(&mut self, base: &'a ast::Expr, name: &'a ast::Name, whole: &'a ast::Expr) -> Target {
+        let Some(instance) = self.place(base) else { return Target::Reported };
+        if let Some(pou) = self.cx.instance_of(instance.ty)
+            && let Some(Local::Action(action)) = self.cx.pou_slots[pou].scope.get(&fold(&name.text)).copied()
+        {
+            return Target::User(Callee::Action(Some(instance), action), action);
+        }
+        match self.place(whole) {
+            Some(place) => self.instance_callee(place),
+            None => Target::Reported,
+        }
+    }
+
+    /// Parameters of a POU as a call sees them.
+    fn parameters(&self, pou: PouId, section: &[Section]) -> Vec<VarId> {
+        let vars = self.cx.defs.pous[pou].vars.iter().copied();
+        vars.filter(|v| section.contains(&self.cx.defs.vars[*v].section)).collect()
+    }
+
+    fn user_call(&mut self, callee: Callee, pou: PouId, call: &'a ast::Call, span: Span) -> Option<Call> {
+        let mut out =
+            Call { callee, inputs: Vec::new(), in_outs: Vec::new(), outputs: Vec::new(), en: None, eno: None, span };
+        let mut fine = true;
+        if self.cx.defs.pous[pou].kind == PouKind::Action {
+            if let Some(arg) = call.args.first() {
+                self.report(
+                    Diagnostic::new(codes::UNKNOWN_PARAMETER, arg.span, "an action has no parameters")
+                        .help("it works on the variables of its POU"),
+                );
+                fine = false;
+            }
+            return fine.then_some(out);
+        }
+        let positional = call.args.iter().find(|a| matches!(a.kind, ast::ArgKind::Positional(_)));
+        let named = call.args.iter().find(|a| !matches!(a.kind, ast::ArgKind::Positional(_)));
+        if let (Some(p), Some(n)) = (positional, named) {
+            self.report(
+                Diagnostic::new(codes::MIXED_ARGUMENTS, p.span, "arguments with and without names are mixed")
+                    .also(n.span, "this one has a name")
+                    .help("write all arguments as `name := value`, or none"),
+            );
+            return None;
+        }
+        let mut given: FxHashMap<VarId, Span> = FxHashMap::default();
+        let by_order = self.parameters(pou, &[Section::Input, Section::InOut]);
+        let mut next = by_order.into_iter();
+        for arg in &call.args {
+            match &arg.kind {
+                ast::ArgKind::Positional(e) => {
+                    let Some(param) = next.next() else {
+                        self.too_many(pou, call, arg.span);
+                        return None;
+                    };
+                    given.insert(param, arg.span);
+                    fine &= self.pass(param, e, &mut out);
+                }
+                ast::ArgKind::Input(name, value) => {
+                    let special = self.en_eno(pou, name);
+                    match (special, value) {
+                        (Some(true), Some(e)) => {
+                            out.en = Some(self.condition(e));
+                            continue;
+                        }
+                        (Some(_), None) => continue,
+                        (Some(false), _) => {
+                            self.wrong_direction(name, "ENO", true);
+                            fine = false;
+                            continue;
+                        }
+                        (None, _) => {}
+                    }
+                    let Some(param) = self.parameter(pou, name, &mut given) else {
+                        if let Some(e) = value {
+                            self.operand(e, None);
+                        }
+                        fine = false;
+                        continue;
+                    };
+                    let section = self.cx.defs.vars[param].section;
+                    if section == Section::Output || section == Section::Result {
+                        self.wrong_direction(name, &name.text, true);
+                        fine = false;
+                        continue;
+                    }
+                    match value {
+                        Some(e) => fine &= self.pass(param, e, &mut out),
+                        None => {
+                            given.remove(&param);
+                        }
+                    }
+                }
+                ast::ArgKind::Output { negated, name, target } => {
+                    if self.en_eno(pou, name) == Some(false) {
+                        if let Some(target) = target.as_ref().and_then(|t| self.place(t)) {
+                            if self.elem_of(target.ty) == Some(Elem::Bool) && self.check_writable(&target) {
+                                out.eno = Some(target);
+                            } else {
+                                fine = false;
+                            }
+                        }
+                        continue;
+                    }
+                    let Some(param) = self.parameter(pou, name, &mut given) else {
+                        if let Some(e) = target {
+                            self.operand(e, None);
+                        }
+                        fine = false;
+                        continue;
+                    };
+                    match self.cx.defs.vars[param].section {
+                        Section::Output | Section::Result => {}
+                        _ => {
+                            self.wrong_direction(name, &name.text, false);
+                            fine = false;
+                            continue;
+                        }
+                    }
+                    if let Some(target) = target {
+                        match self.fetch(param, *negated, target) {
+                            Some(output) => out.outputs.push(output),
+                            None => fine = false,
+                        }
+                    }
+                }
+            }
+        }
+        fine &= self.all_in_outs_given(pou, &given, call);
+        fine.then_some(out)
+    }
+
+    /// `Some(true)` for EN, `Some(false)` for ENO, unless the POU declares a parameter of that name.
+    fn en_eno(&self, pou: PouId, name: &ast::Name) -> Option<bool> {
+        let key = fold(&name.text);
+        if self.cx.pou_slots[pou].scope.contains_key(&key) {
+            return None;
+        }
+        match key.as_str() {
+            "EN" => Some(true),
+            "ENO" => Some(false),
+            _ => None,
+        }
+    }
+
+    fn wrong_direction(&mut self, name: &ast::Name, what: &str, is_output: bool) {
+        let (message, help) = if is_output {
+            (format!("`{what}` is an output"), format!("fetch it with `{what} => variable`"))
+        } else {
+            (format!("`{what}` is an input"), format!("give it a value with `{what} := value`"))
+        };
+        self.report(Diagnostic::new(codes::WRONG_DIRECTION, name.span, message).help(help));
+    }
+
+    fn too_many(&mut self, pou: PouId, call: &ast::Call, span: Span) {
+        let params = self.parameters(pou, &[Section::Input, Section::InOut]);
+        let names: Vec<&str> = params.iter().map(|v| self.cx.defs.vars[*v].name.as_str()).collect();
+        let name = self.cx.defs.pous[pou].name.clone();
+        let message = format!("{} arguments for the {} parameters of `{name}`", call.args.len(), names.len());
+        let help = if names.is_empty() { "it has none".into() } else { format!("it takes {}", names.join(", ")) };
+        self.report(Diagnostic::new(codes::TOO_MANY_ARGUMENTS, span, message).help(help));
+    }
+
+    fn parameter(&mut self, pou: PouId, name: &ast::Name, given: &mut FxHashMap<VarId, Span>) -> Option<VarId> {
+        let found = match self.cx.pou_slots[pou].scope.get(&fold(&name.text)) {
+            Some(Local::Var(var)) => Some(*var),
+            _ => None,
+        };
+        let is_parameter = |c: &Self, v: VarId| {
+            matches!(c.cx.defs.vars[v].section, Section::Input | Section::Output | Section::InOut | Section::Result)
+        };
+        match found.filter(|v| is_parameter(self, *v)) {
+            Some(param) => {
+                if let Some(first) = given.insert(param, name.span) {
+                    self.report(
+                        Diagnostic::new(
+                            codes::DUPLICATE_ARGUMENT,
+                            name.span,
+                            format!("parameter `{}` is given twice", name.text),
+                        )
+                        .also(first, "first given here")
+                        .help("remove one of them"),
+                    );
+                    return None;
+                }
+                Some(param)
+            }
+            None => {
+                let params = self.parameters(pou, &[Section::Input, Section::Output, Section::InOut]);
+                let names = params.iter().map(|v| self.cx.defs.vars[*v].name.as_str());
+                let hint = similar(&name.text, names.clone());
+                let def = &self.cx.defs.pous[pou];
+                let help = match (hint, found) {
+                    (Some(near), _) => format!("did you mean `{near}`?"),
+                    (None, Some(_)) => "it is an inner variable and cannot be given from outside".into(),
+                    (None, None) => format!("its parameters are {}", names.collect::<Vec<_>>().join(", ")),
+                };
+                let mut d = Diagnostic::new(
+                    codes::UNKNOWN_PARAMETER,
+                    name.span,
+                    format!("`{}` has no parameter `{}`", def.name, name.text),
+                )
+                .help(help);
+                if !def.builtin {
+                    d = d.also(def.span, "declared here");
+                }
+                self.report(d);
+                None
+            }
+        }
+    }
+
+    /// One argument for an input or VAR_IN_OUT.
+    fn pass(&mut self, param: VarId, e: &'a ast::Expr, out: &mut Call) -> bool {
+        let ty = self.type_of_var(param);
+        if self.cx.defs.vars[param].section == Section::InOut {
+            let Some(place) = self.place(e) else { return false };
+            if !self.check_writable(&place) || !self.in_out_fits(param, ty, &place) {
+                return false;
+            }
+            if !self.addressable(&place, "a VAR_IN_OUT") {
+                return false;
+            }
+            out.in_outs.push((param, place));
+            return true;
+        }
+        let value = self.value(e, ty);
+        if value.ty == Types::ERROR {
+            return false;
+        }
+        out.inputs.push((param, value));
+        true
+    }
+
+    /// A VAR_IN_OUT takes a variable of equal type; with open capacity or bounds any (\[S4\]).
+    fn in_out_fits(&mut self, param: VarId, ty: TypeId, place: &Place) -> bool {
+        if ty == Types::ERROR || place.ty == Types::ERROR {
+            return false;
+        }
+        if ty == place.ty {
+            return true;
+        }
+        let types = &self.cx.defs.types;
+        let lax = match (types.get(ty).clone(), types.get(place.ty).clone()) {
+            (Type::AnyString { wide: a }, Type::String { wide: b, .. } | Type::AnyString { wide: b }) if a == b => {
+                return true;
+            }
+            (Type::AnyArray { dims, elem }, Type::Array { dims: d, elem: e }) if dims == d.len() && elem == e => {
+                return true;
+            }
+            (Type::String { wide: a, capacity: m }, Type::String { wide: b, capacity: n }) => a == b && n >= m,
+            (Type::Array { dims: a, elem: x }, Type::Array { dims: b, elem: y }) => {
+                let count = |d: &[(i64, i64)]| d.iter().map(|(l, h)| h - l + 1).product::<i64>();
+                x == y && count(&a) == count(&b)
+            }
+            _ => false,
+        };
+        let (want, have) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
+        let (name, span) = (self.cx.defs.vars[param].name.clone(), self.cx.defs.vars[param].span);
+        let d = Diagnostic::new(
+            codes::IN_OUT_MISMATCH,
+            place.span,
+            format!("VAR_IN_OUT `{name}` is {want}, this variable is {have}"),
+        )
+        .also(span, "the parameter is declared here")
+        .help("a VAR_IN_OUT is the variable itself: both must have the same type");
+        if lax {
+            return self.codesys_only(place.span, codes::LAX_CONVERSION, d);
+        }
+        self.report(d);
+        false
+    }
+
+    /// `output => target`.
+    fn fetch(&mut self, param: VarId, negated: bool, target: &'a ast::Expr) -> Option<OutputArg> {
+        let ty = self.type_of_var(param);
+        let place = self.place(target)?;
+        if !self.check_writable(&place) || ty == Types::ERROR {
+            return None;
+        }
+        if negated && self.elem_of(ty) != Some(Elem::Bool) {
+            let name = self.cx.type_name(ty);
+            self.report(Diagnostic::new(
+                codes::WRONG_OPERAND,
+                target.span,
+                format!("NOT needs a BOOL output, this is {name}"),
+            ));
+            return None;
+        }
+        let convert = if ty == place.ty {
+            None
+        } else {
+            match (self.elem_of(ty), self.elem_of(place.ty)) {
+                (Some(from), Some(to)) if !self.is_enum(ty) && !self.is_enum(place.ty) => {
+                    match rules::implicit(from, to) {
+                        Implicit::Same => None,
+                        Implicit::Exact | Implicit::Rounds => Some((from, to)),
+                        how => {
+                            let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
+                            let d = Diagnostic::new(
+                                codes::TYPE_MISMATCH,
+                                target.span,
+                                format!("the output is {have}, this variable is {want}"),
+                            )
+                            .help(conversion_help(from, to));
+                            if how == Implicit::No {
+                                self.report(d);
+                                return None;
+                            }
+                            if !self.codesys_only(target.span, codes::LAX_CONVERSION, d) {
+                                return None;
+                            }
+                            Some((from, to))
+                        }
+                    }
+                }
+                _ => {
+                    let strings = |t| match self.cx.defs.types.get(t) {
+                        Type::String { wide, .. } => Some(*wide),
+                        _ => None,
+                    };
+                    if strings(ty).is_none() || strings(ty) != strings(place.ty) {
+                        let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
+                        self.report(Diagnostic::new(
+                            codes::TYPE_MISMATCH,
+                            target.span,
+                            format!("the output is {have}, this variable is {want}"),
+                        ));
+                        return None;
+                    }
+                    None
+                }
+            }
+        };
+        Some(OutputArg { output: param, negated, convert, target: place })
+    }
+
+    fn is_enum(&self, ty: TypeId) -> bool {
+        matches!(self.cx.defs.types.get(ty), Type::Enum(_))
+    }
+
+    fn all_in_outs_given(&mut self, pou: PouId, given: &FxHashMap<VarId, Span>, call: &ast::Call) -> bool {
+        let missing: Vec<VarId> =
+            self.parameters(pou, &[Section::InOut]).into_iter().filter(|v| !given.contains_key(v)).collect();
+        for param in &missing {
+            let (name, span) = (self.cx.defs.vars[*param].name.clone(), self.cx.defs.vars[*param].span);
+            self.report(
+                Diagnostic::new(
+                    codes::MISSING_IN_OUT,
+                    call.callee.span,
+                    format!("VAR_IN_OUT `{name}` is not connected"),
+                )
+                .also(span, "declared here")
+                .help(format!("give it a variable in every call: `{name} := variable`")),
+            );
+        }
+        missing.is_empty()
+    }
+
+    fn special_call(&mut self, special: Special, call: &'a ast::Call, span: Span) -> Operand {
+        let pointer = match special {
+            Special::NotYet(what) => return self.not_yet(span, what),
+            Special::Reference { pointer } => pointer,
+        };
+        let [ast::Arg { kind: ast::ArgKind::Positional(e), .. }] = call.args.as_slice() else {
+            self.report(
+                Diagnostic::new(codes::TOO_MANY_ARGUMENTS, span, "a reference is taken of one variable")
+                    .help("write REF(variable)"),
+            );
+            return Operand::Error;
+        };
+        let Some(place) = self.place(e) else { return Operand::Error };
+        if !self.addressable(&place, "a reference") {
+            return Operand::Error;
+        }
+        let Root::Var(var) = place.root else {
+            return self.not_yet(span, "a reference to this place");
+        };
+        let section = self.cx.defs.vars[var].section;
+        let owner = self.cx.defs.vars[var].owner;
+        let frame = section == Section::Temp || owner.is_some_and(|o| self.cx.defs.pous[o].kind == PouKind::Function);
+        if frame || section == Section::InOut {
+            return self.not_yet(span, "a reference to a variable of a call");
+        }
+        self.cx.defs.vars[var].address_taken = true;
+        let ty = self.cx.defs.types.intern(Type::Ref { pointer, target: place.ty });
+        Operand::value(ExprKind::RefOf(place), ty, span)
+    }
+}

@@ -1,0 +1,411 @@
+//! Declares every name: POUs, actions, types, variables. In: all syntax trees. Out: name tables and open slots in [`Cx`].
+//! Types and initial values are resolved afterwards, on demand (`resolve`, `initial`).
+
+use crate::cx::*;
+use crate::defs::*;
+use crate::init::Init;
+use crate::types::{Type, Types};
+use plcc_diag::{Diagnostic, Span, codes};
+use plcc_stdlib::elem::Elem;
+use plcc_syntax::ast;
+use smol_str::SmolStr;
+
+/// The POU behind an item with a tree, for the passes that follow.
+pub(crate) fn collect<'a>(cx: &mut Cx<'a>, units: &[Unit<'a>]) {
+    // Types and POUs first: variables name them, files and POUs stand in any order (semantics.md [L3]).
+    let mut pous: Vec<(PouId, &'a ast::Pou)> = Vec::new();
+    let mut late_actions = Vec::new();
+    for unit in units {
+        for item in &unit.ast.items {
+            match item {
+                ast::Item::Types(decls) => decls.iter().for_each(|d| declare_type(cx, d)),
+                ast::Item::Pou(pou) => pous.push((declare_pou(cx, pou, unit), pou)),
+                ast::Item::Action(action) => late_actions.push((action, unit)),
+                ast::Item::Globals(_) | ast::Item::Config(_) => {}
+            }
+        }
+    }
+    for unit in units {
+        for item in &unit.ast.items {
+            match item {
+                ast::Item::Globals(section) => declare_globals(cx, section),
+                ast::Item::Config(config) => {
+                    let resources = config.resources.iter().flat_map(|r| &r.sections);
+                    config.sections.iter().chain(resources).for_each(|s| declare_globals(cx, s));
+                }
+                _ => {}
+            }
+        }
+    }
+    for (id, pou) in pous {
+        declare_vars(cx, id, pou);
+        for action in &pou.actions {
+            declare_action(cx, id, action);
+        }
+    }
+    for (action, unit) in late_actions {
+        let owner = action.owner.as_ref().and_then(|o| cx.pous.get(&fold(&o.text)).copied());
+        match owner {
+            Some(owner) => declare_action(cx, owner, action),
+            None => {
+                let _ = unit;
+                cx.push(
+                    Diagnostic::new(codes::ACTION_WITHOUT_POU, action.name.span, "this ACTION belongs to no POU")
+                        .help("write it inside its PROGRAM or FUNCTION_BLOCK, after the body"),
+                );
+            }
+        }
+    }
+}
+
+fn duplicate(cx: &mut Cx, what: &str, name: &ast::Name, first: Span) {
+    cx.push(
+        Diagnostic::new(codes::DUPLICATE_NAME, name.span, format!("{what} `{}` is declared twice", name.text))
+            .label("declared again here")
+            .also(first, "first declared here")
+            .help("remove or rename one of them; names do not differ by case"),
+    );
+}
+
+fn declare_type<'a>(cx: &mut Cx<'a>, decl: &'a ast::TypeDecl) {
+    let key = fold(&decl.name.text);
+    if let Some(&slot) = cx.types.get(&key) {
+        return duplicate(cx, "type", &decl.name, cx.type_slots[slot].decl.name.span);
+    }
+    if Elem::from_name(&key).is_some() {
+        cx.push(
+            Diagnostic::new(
+                codes::DUPLICATE_NAME,
+                decl.name.span,
+                format!("`{}` is the name of an elementary type", decl.name.text),
+            )
+            .help("choose another name for this type"),
+        );
+        return;
+    }
+    cx.types.insert(key, cx.type_slots.len());
+    cx.type_slots.push(TypeSlot { decl, early: None, state: State::Todo });
+}
+
+fn declare_pou<'a>(cx: &mut Cx<'a>, pou: &'a ast::Pou, unit: &Unit<'a>) -> PouId {
+    let kind = match pou.kind {
+        ast::PouKind::Program => PouKind::Program,
+        ast::PouKind::FunctionBlock => PouKind::FunctionBlock,
+        ast::PouKind::Function => PouKind::Function,
+    };
+    let key = fold(&pou.name.text);
+    let id = new_pou(cx, &pou.name, kind, unit.builtin, Some(&pou.body), pou.span);
+    match cx.pous.get(&key).copied() {
+        Some(first) if !cx.defs.pous[first].builtin => {
+            duplicate(cx, "POU", &pou.name, cx.defs.pous[first].span);
+        }
+        Some(_) => {
+            cx.push(
+                Diagnostic::new(
+                    codes::HIDES_STANDARD,
+                    pou.name.span,
+                    format!("`{}` hides the standard function block of this name", pou.name.text),
+                )
+                .help("all sources of this project now use this one"),
+            );
+            cx.pous.insert(key, id);
+        }
+        None => {
+            if let Some(&slot) = cx.types.get(&key) {
+                duplicate(cx, "name", &pou.name, cx.type_slots[slot].decl.name.span);
+            }
+            if !unit.builtin && plcc_stdlib::funcs::find(&key).is_some() {
+                cx.push(
+                    Diagnostic::new(
+                        codes::HIDES_STANDARD,
+                        pou.name.span,
+                        format!("`{}` hides the standard function of this name", pou.name.text),
+                    )
+                    .help("all sources of this project now use this one"),
+                );
+            }
+            cx.pous.insert(key, id);
+        }
+    }
+    id
+}
+
+fn new_pou<'a>(
+    cx: &mut Cx<'a>,
+    name: &ast::Name,
+    kind: PouKind,
+    builtin: bool,
+    body: Option<&'a ast::Body>,
+    span: Span,
+) -> PouId {
+    let profile = if cx.codesys(span) { Profile::Codesys } else { Profile::Strict };
+    let id = cx.defs.pous.push(Pou {
+        name: name.text.clone(),
+        kind,
+        owner: None,
+        vars: Vec::new(),
+        result: None,
+        actions: Vec::new(),
+        profile,
+        builtin,
+        span: name.span,
+    });
+    cx.pou_slots.push(PouSlot { scope: Default::default(), body });
+    id
+}
+
+fn declare_action<'a>(cx: &mut Cx<'a>, owner: PouId, action: &'a ast::Action) {
+    let builtin = cx.defs.pous[owner].builtin;
+    if cx.defs.pous[owner].kind == PouKind::Function {
+        cx.push(
+            Diagnostic::new(codes::ACTION_WITHOUT_POU, action.name.span, "a FUNCTION has no actions")
+                .help("only PROGRAM and FUNCTION_BLOCK have ACTIONs"),
+        );
+        return;
+    }
+    let id = new_pou(cx, &action.name, PouKind::Action, builtin, Some(&action.body), action.span);
+    cx.defs.pous[id].owner = Some(owner);
+    cx.defs.pous[id].profile = cx.defs.pous[owner].profile;
+    cx.defs.pous[owner].actions.push(id);
+    let key = fold(&action.name.text);
+    let first = match cx.pou_slots[owner].scope.get(&key) {
+        Some(Local::Action(first)) => Some(cx.defs.pous[*first].span),
+        Some(Local::Var(var) | Local::External(var)) => Some(cx.defs.vars[*var].span),
+        Some(Local::Missing) | None => None,
+    };
+    match first {
+        Some(first) => duplicate(cx, "name", &action.name, first),
+        None => {
+            cx.pou_slots[owner].scope.insert(key, Local::Action(id));
+        }
+    }
+}
+
+/// Opens a variable; its type and initial value are resolved later.
+pub(crate) fn new_var<'a>(
+    cx: &mut Cx<'a>,
+    name: SmolStr,
+    span: Span,
+    section: Section,
+    owner: Option<PouId>,
+    decl: Option<(&'a ast::TypeExpr, Option<&'a ast::Init>)>,
+) -> VarId {
+    let id = cx.defs.vars.push(Var {
+        name,
+        ty: Types::ERROR,
+        section,
+        owner,
+        constant: false,
+        retain: false,
+        address: None,
+        init: Init::Default,
+        address_taken: false,
+        span,
+    });
+    cx.var_slots.push(VarSlot { decl, ty: State::Todo, init: State::Todo });
+    id
+}
+
+fn qualify(cx: &mut Cx, var: VarId, section: &ast::VarSection) {
+    for (qualifier, _) in &section.qualifiers {
+        match qualifier {
+            ast::Qualifier::Constant => cx.defs.vars[var].constant = true,
+            ast::Qualifier::Retain | ast::Qualifier::Persistent => cx.defs.vars[var].retain = true,
+            ast::Qualifier::NonRetain | ast::Qualifier::Access => {}
+        }
+    }
+}
+
+fn locate(cx: &mut Cx, var: VarId, decl: &ast::VarDecl) {
+    let Some((text, span)) = &decl.at else { return };
+    match crate::address::parse(text) {
+        Ok(address) => cx.defs.vars[var].address = Some(address),
+        Err(message) => cx.push(
+            Diagnostic::new(codes::BAD_ADDRESS, *span, format!("`{text}`: {message}"))
+                .help("write %I, %Q or %M, a size X B W D L, and a number: %IX0.0, %QW4, %MD8"),
+        ),
+    }
+}
+
+fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
+    match section.kind {
+        ast::SectionKind::Global => {}
+        // Read by `config`.
+        ast::SectionKind::Config | ast::SectionKind::Access => return,
+        _ => {
+            cx.push(
+                Diagnostic::new(codes::MISPLACED_SECTION, section.span.before(), "only VAR_GLOBAL may stand here")
+                    .help("other variables are declared inside a PROGRAM, FUNCTION_BLOCK or FUNCTION"),
+            );
+            return;
+        }
+    }
+    for decl in &section.vars {
+        for name in &decl.names {
+            let key = fold(&name.text);
+            if let Some(&first) = cx.globals.get(&key) {
+                duplicate(cx, "global variable", name, cx.defs.vars[first].span);
+                continue;
+            }
+            let var =
+                new_var(cx, name.text.clone(), name.span, Section::Global, None, Some((&decl.ty, decl.init.as_ref())));
+            qualify(cx, var, section);
+            locate(cx, var, decl);
+            cx.defs.globals.push(var);
+            cx.globals.insert(key, var);
+        }
+    }
+}
+
+fn declare_vars<'a>(cx: &mut Cx<'a>, id: PouId, pou: &'a ast::Pou) {
+    if pou.kind == ast::PouKind::Function {
+        if let Some(result) = &pou.result {
+            let name = pou.name.text.clone();
+            let var = new_var(cx, name.clone(), pou.name.span, Section::Result, Some(id), Some((result, None)));
+            cx.defs.pous[id].result = Some(var);
+            cx.defs.pous[id].vars.push(var);
+            cx.pou_slots[id].scope.insert(fold(&name), Local::Var(var));
+        }
+    } else if let Some(result) = &pou.result {
+        cx.push(
+            Diagnostic::new(codes::RESULT_TYPE, result.span, "only a FUNCTION has a result type")
+                .help("declare a VAR_OUTPUT instead"),
+        );
+    }
+    for section in &pou.sections {
+        let place = match section.kind {
+            ast::SectionKind::Var => Section::Local,
+            ast::SectionKind::Temp => Section::Temp,
+            ast::SectionKind::Input => Section::Input,
+            ast::SectionKind::Output => Section::Output,
+            ast::SectionKind::InOut => Section::InOut,
+            ast::SectionKind::External => {
+                section.vars.iter().for_each(|d| declare_external(cx, id, d));
+                continue;
+            }
+            // CODESYS sources and some PROGRAMs declare globals inside a POU; the standard allows VAR_ACCESS in programs.
+            ast::SectionKind::Global if pou.kind == ast::PouKind::Program => {
+                declare_globals(cx, section);
+                continue;
+            }
+            ast::SectionKind::Global | ast::SectionKind::Config | ast::SectionKind::Access => {
+                cx.push(
+                    Diagnostic::new(
+                        codes::MISPLACED_SECTION,
+                        section.span.before(),
+                        "this section cannot stand in a POU",
+                    )
+                    .help("VAR_GLOBAL, VAR_CONFIG and VAR_ACCESS belong to a CONFIGURATION or the top level of a file"),
+                );
+                continue;
+            }
+        };
+        for decl in &section.vars {
+            for name in &decl.names {
+                declare_var(cx, id, section, place, decl, name);
+            }
+        }
+    }
+}
+
+fn declare_var<'a>(
+    cx: &mut Cx<'a>,
+    id: PouId,
+    section: &'a ast::VarSection,
+    place: Section,
+    decl: &'a ast::VarDecl,
+    name: &'a ast::Name,
+) {
+    let key = fold(&name.text);
+    if let Some(first) = cx.pou_slots[id].scope.get(&key) {
+        let first = match first {
+            Local::Var(var) | Local::External(var) => cx.defs.vars[*var].span,
+            Local::Action(pou) => cx.defs.pous[*pou].span,
+            Local::Missing => name.span,
+        };
+        return duplicate(cx, "variable", name, first);
+    }
+    let var = new_var(cx, name.text.clone(), name.span, place, Some(id), Some((&decl.ty, decl.init.as_ref())));
+    qualify(cx, var, section);
+    locate(cx, var, decl);
+    if decl.at.is_some() && !matches!(place, Section::Local) {
+        cx.push(
+            Diagnostic::new(codes::BAD_ADDRESS, decl.span, "only VAR and VAR_GLOBAL may be located with AT")
+                .help("declare the variable in VAR, or as VAR_GLOBAL"),
+        );
+        cx.defs.vars[var].address = None;
+    } else if decl.at.is_some() && cx.defs.pous[id].kind != PouKind::Program {
+        cx.push(
+            Diagnostic::new(
+                codes::BAD_ADDRESS,
+                decl.span,
+                "only PROGRAMs and VAR_GLOBAL may hold located variables: each instance would share the address",
+            )
+            .help("declare it as VAR_GLOBAL and use it with VAR_EXTERNAL, or pass it as a parameter"),
+        );
+        cx.defs.vars[var].address = None;
+    }
+    if let Some((_, span)) = decl.edge {
+        cx.push(
+            Diagnostic::new(codes::NOT_YET, span, "R_EDGE and F_EDGE are not implemented yet")
+                .help("use an instance of R_TRIG or F_TRIG"),
+        );
+    }
+    cx.defs.pous[id].vars.push(var);
+    cx.pou_slots[id].scope.insert(key, Local::Var(var));
+}
+
+fn declare_external<'a>(cx: &mut Cx<'a>, id: PouId, decl: &'a ast::VarDecl) {
+    for name in &decl.names {
+        let key = fold(&name.text);
+        let local = match cx.globals.get(&key).copied() {
+            Some(global) => {
+                let declared = cx.resolve_type(&decl.ty, None, &name.text).ty;
+                cx.var_type(global);
+                let actual = cx.defs.vars[global].ty;
+                let same = declared == actual || declared == Types::ERROR || actual == Types::ERROR;
+                if !same && !open_string(cx, declared, actual) {
+                    let message = format!(
+                        "VAR_EXTERNAL `{}` is {}, its VAR_GLOBAL is {}",
+                        name.text,
+                        cx.type_name(declared),
+                        cx.type_name(actual)
+                    );
+                    let first = cx.defs.vars[global].span;
+                    cx.push(
+                        Diagnostic::new(codes::EXTERNAL_MISMATCH, decl.ty.span, message)
+                            .also(first, "the global variable is declared here")
+                            .help("declare it with the same type"),
+                    );
+                }
+                Local::External(global)
+            }
+            None => {
+                let hint = similar(&name.text, cx.globals.keys().map(SmolStr::as_str));
+                cx.push(
+                    Diagnostic::new(
+                        codes::EXTERNAL_MISSING,
+                        name.span,
+                        format!("there is no VAR_GLOBAL `{}`", name.text),
+                    )
+                    .help(match hint {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => "declare it in a VAR_GLOBAL section".into(),
+                    }),
+                );
+                Local::Missing
+            }
+        };
+        if cx.pou_slots[id].scope.insert(key, local).is_some() {
+            duplicate(cx, "variable", name, name.span);
+        }
+    }
+}
+
+/// `STRING` in VAR_EXTERNAL stands for the capacity of the global.
+fn open_string(cx: &Cx, declared: crate::types::TypeId, actual: crate::types::TypeId) -> bool {
+    matches!(
+        (cx.defs.types.get(declared), cx.defs.types.get(actual)),
+        (Type::String { wide: a, .. }, Type::String { wide: b, .. }) if a == b
+    )
+}

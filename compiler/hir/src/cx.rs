@@ -1,0 +1,192 @@
+//! What all passes over the declarations share: the name tables, what is still to be resolved, and the list of messages.
+
+use crate::defs::*;
+use crate::init::Init;
+use crate::types::{Type, TypeId, Types};
+use index_vec::IndexVec;
+use plcc_diag::{Diagnostic, Diagnostics, FileId, Span};
+use plcc_stdlib::elem::Elem;
+use plcc_syntax::ast;
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+/// One parsed source file.
+#[derive(Debug)]
+pub struct Unit<'a> {
+    /// Which file.
+    pub file: FileId,
+    /// Its tree.
+    pub ast: &'a ast::File,
+    /// The profile it is read in (semantics.md \[P1\]).
+    pub profile: Profile,
+    /// Part of plcc: the standard function blocks.
+    pub builtin: bool,
+}
+
+/// A name as IEC compares it: any case.
+pub(crate) fn fold(name: &str) -> SmolStr {
+    if name.bytes().any(|b| b.is_ascii_lowercase()) { name.to_ascii_uppercase().into() } else { name.into() }
+}
+
+/// A type with the initial value that its declaration gives.
+#[derive(Debug, Clone)]
+pub(crate) struct Resolved {
+    pub ty: TypeId,
+    pub init: Init,
+}
+
+impl Resolved {
+    pub fn error() -> Self {
+        Self { ty: Types::ERROR, init: Init::Default }
+    }
+}
+
+/// How far something that is resolved on demand has come.
+#[derive(Debug, Clone)]
+pub(crate) enum State<T> {
+    Todo,
+    Busy,
+    Done(T),
+}
+
+pub(crate) struct TypeSlot<'a> {
+    pub decl: &'a ast::TypeDecl,
+    /// The id that references may use while the fields are being resolved.
+    pub early: Option<TypeId>,
+    pub state: State<Resolved>,
+}
+
+pub(crate) struct VarSlot<'a> {
+    /// `None` for variables that no declaration writes (a function's result).
+    pub decl: Option<(&'a ast::TypeExpr, Option<&'a ast::Init>)>,
+    pub ty: State<Init>,
+    pub init: State<()>,
+}
+
+/// What a name means inside a POU.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Local {
+    Var(VarId),
+    /// VAR_EXTERNAL, followed to its global.
+    External(VarId),
+    /// VAR_EXTERNAL without a global; reported at its declaration.
+    Missing,
+    Action(PouId),
+}
+
+pub(crate) struct PouSlot<'a> {
+    pub scope: FxHashMap<SmolStr, Local>,
+    pub body: Option<&'a ast::Body>,
+}
+
+pub(crate) struct Cx<'a> {
+    pub defs: Defs,
+    pub diags: Diagnostics,
+    pub files: FxHashMap<FileId, Profile>,
+    pub globals: FxHashMap<SmolStr, VarId>,
+    pub pous: FxHashMap<SmolStr, PouId>,
+    pub types: FxHashMap<SmolStr, usize>,
+    pub type_slots: Vec<TypeSlot<'a>>,
+    /// Values of all enumerations by name.
+    pub enum_values: FxHashMap<SmolStr, Vec<(EnumId, i128)>>,
+    pub var_slots: IndexVec<VarId, VarSlot<'a>>,
+    pub pou_slots: IndexVec<PouId, PouSlot<'a>>,
+    /// Types written once and used by several names (`a, b : (Red, Green)`).
+    pub type_cache: FxHashMap<*const ast::TypeExpr, Resolved>,
+    /// Errors that the codesys profile would not have: for the closing note of \[P1\].
+    pub codesys_only: usize,
+    /// Names that were reported as unknown, by POU: one message each.
+    reported: FxHashSet<(Option<PouId>, SmolStr)>,
+}
+
+impl<'a> Cx<'a> {
+    pub fn new(units: &[Unit<'a>]) -> Self {
+        Self {
+            defs: Defs::default(),
+            diags: Diagnostics::new(),
+            files: units.iter().map(|u| (u.file, u.profile)).collect(),
+            globals: FxHashMap::default(),
+            pous: FxHashMap::default(),
+            types: FxHashMap::default(),
+            type_slots: Vec::new(),
+            enum_values: FxHashMap::default(),
+            var_slots: IndexVec::new(),
+            pou_slots: IndexVec::new(),
+            type_cache: FxHashMap::default(),
+            codesys_only: 0,
+            reported: FxHashSet::default(),
+        }
+    }
+
+    pub fn codesys(&self, span: Span) -> bool {
+        self.files.get(&span.file) == Some(&Profile::Codesys)
+    }
+
+    /// Whether something about a name is reported for the first time in a POU.
+    pub fn first_report(&mut self, scope: Option<PouId>, name: &str) -> bool {
+        self.reported.insert((scope, fold(name)))
+    }
+
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.diags.push(diagnostic);
+    }
+
+    /// The name of a type in messages.
+    pub fn type_name(&self, ty: TypeId) -> String {
+        type_name(&self.defs, ty)
+    }
+
+    /// The elementary type that holds the values of a type: itself, an enumeration's or a subrange's base.
+    pub fn elem_of(&self, ty: TypeId) -> Option<Elem> {
+        elem_of(&self.defs, ty)
+    }
+}
+
+/// The elementary type that holds the values of a type: itself, an enumeration's or a subrange's base.
+pub fn elem_of(defs: &Defs, ty: TypeId) -> Option<Elem> {
+    match defs.types.get(ty) {
+        Type::Elem(e) => Some(*e),
+        Type::Enum(id) => Some(defs.enums[*id].base),
+        Type::Subrange { base, .. } => Some(*base),
+        _ => None,
+    }
+}
+
+/// The name of a type as a user would write it.
+pub fn type_name(defs: &Defs, ty: TypeId) -> String {
+    let wide = |w: bool| if w { "WSTRING" } else { "STRING" };
+    match defs.types.get(ty) {
+        Type::Error => "?".into(),
+        Type::Void => "no value".into(),
+        Type::Null => "NULL".into(),
+        Type::Elem(e) => e.name().into(),
+        Type::String { wide: w, capacity } => format!("{}[{capacity}]", wide(*w)),
+        Type::AnyString { wide: w } => wide(*w).into(),
+        Type::Array { dims, elem } => {
+            let dims: Vec<String> = dims.iter().map(|(l, h)| format!("{l}..{h}")).collect();
+            format!("ARRAY [{}] OF {}", dims.join(", "), type_name(defs, *elem))
+        }
+        Type::AnyArray { dims, elem } => {
+            format!("ARRAY [{}] OF {}", vec!["*"; *dims].join(", "), type_name(defs, *elem))
+        }
+        Type::Struct(id) => defs.structs[*id].name.to_string(),
+        Type::Enum(id) => defs.enums[*id].name.to_string(),
+        Type::Subrange { base, low, high } => format!("{} ({low}..{high})", base.name()),
+        Type::Instance(pou) => defs.pous[*pou].name.to_string(),
+        Type::Ref { pointer, target } => {
+            format!("{} {}", if *pointer { "POINTER TO" } else { "REF_TO" }, type_name(defs, *target))
+        }
+    }
+}
+
+/// The candidate that a user most likely meant, if one is near enough.
+pub fn similar<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    let wanted = wanted.to_ascii_uppercase();
+    let limit = (wanted.chars().count() / 3).max(1);
+    names
+        .filter(|n| !n.starts_with('$'))
+        .map(|n| (strsim::osa_distance(&wanted, &n.to_ascii_uppercase()), n))
+        .filter(|(d, _)| *d <= limit)
+        .min()
+        .map(|(_, n)| n.to_string())
+}

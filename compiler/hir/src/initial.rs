@@ -1,0 +1,213 @@
+//! Initial values: initialisers as written, evaluated against their type (semantics.md \[T9\] \[S8\]).
+
+use crate::cx::*;
+use crate::defs::*;
+use crate::expr::Checker;
+use crate::init::Init;
+use crate::types::{Type, TypeId, Types};
+use plcc_diag::{Diagnostic, codes};
+use plcc_syntax::ast;
+use rustc_hash::FxHashMap;
+
+impl<'a> Cx<'a> {
+    /// Evaluates the initial value of a variable, if that has not happened yet. Others may be read while doing so; a cycle is
+    /// an error.
+    pub fn var_init(&mut self, var: VarId) {
+        self.var_type(var);
+        match self.var_slots[var].init {
+            State::Done(()) => return,
+            State::Busy => {
+                let (name, span) = (self.defs.vars[var].name.clone(), self.defs.vars[var].span);
+                self.push(
+                    Diagnostic::new(
+                        codes::CYCLIC_VALUE,
+                        span,
+                        format!("the initial value of `{name}` depends on itself"),
+                    )
+                    .help("break the cycle: one of these values must be written as a literal"),
+                );
+                return;
+            }
+            State::Todo => {}
+        }
+        self.var_slots[var].init = State::Busy;
+        let from_type = match &self.var_slots[var].ty {
+            State::Done(init) => init.clone(),
+            _ => Init::Default,
+        };
+        let written = self.var_slots[var].decl.and_then(|(_, init)| init);
+        let (ty, owner, section) = (self.defs.vars[var].ty, self.defs.vars[var].owner, self.defs.vars[var].section);
+        self.defs.vars[var].init = match written {
+            Some(init) if section == Section::InOut => {
+                self.push(
+                    Diagnostic::new(codes::BAD_INITIALISER, init.span, "a VAR_IN_OUT has no initial value")
+                        .help("it is the variable that each call connects"),
+                );
+                Init::Default
+            }
+            Some(init) => self.initial(init, ty, owner),
+            None => from_type,
+        };
+        self.var_slots[var].init = State::Done(());
+    }
+
+    /// Initial values of all variables.
+    pub fn init_all(&mut self) {
+        for var in self.defs.vars.indices() {
+            self.var_init(var);
+        }
+    }
+
+    /// An initialiser against the type of what it initialises.
+    pub fn initial(&mut self, init: &'a ast::Init, ty: TypeId, scope: Option<PouId>) -> Init {
+        if ty == Types::ERROR {
+            return Init::Default;
+        }
+        match self.defs.types.get(ty).clone() {
+            Type::Array { dims, elem } => {
+                let count: i64 = dims.iter().map(|(l, h)| h - l + 1).product();
+                self.initial_array(init, elem, count as u32, scope)
+            }
+            Type::Struct(id) => {
+                let fields: Vec<_> = self.defs.structs[id].fields.iter().map(|f| (f.name.clone(), f.ty)).collect();
+                self.initial_fields(init, ty, &fields, scope)
+            }
+            Type::Instance(pou) => {
+                let vars = self.defs.pous[pou].vars.clone();
+                vars.iter().for_each(|v| self.var_type(*v));
+                let fields: Vec<_> =
+                    vars.iter().map(|v| (self.defs.vars[*v].name.clone(), self.defs.vars[*v].ty)).collect();
+                self.initial_fields(init, ty, &fields, scope)
+            }
+            _ => match &init.kind {
+                ast::InitKind::Expr(e) => Checker::constant(self, scope).const_init(e, ty),
+                _ => {
+                    self.wrong_form(init, ty);
+                    Init::Default
+                }
+            },
+        }
+    }
+
+    fn wrong_form(&mut self, init: &ast::Init, ty: TypeId) {
+        let name = self.type_name(ty);
+        let help = match self.defs.types.get(ty) {
+            Type::Array { .. } => "an array is initialised with a list: [1, 2, 3(0)]",
+            Type::Struct(_) | Type::Instance(_) => "components are initialised by name: (a := 1, b := 2)",
+            _ => "write one value",
+        };
+        self.push(
+            Diagnostic::new(codes::BAD_INITIALISER, init.span, format!("this cannot initialise {name}")).help(help),
+        );
+    }
+
+    fn initial_fields(
+        &mut self,
+        init: &'a ast::Init,
+        ty: TypeId,
+        fields: &[(smol_str::SmolStr, TypeId)],
+        scope: Option<PouId>,
+    ) -> Init {
+        let parts = match &init.kind {
+            ast::InitKind::Struct(parts) => parts,
+            ast::InitKind::Expr(e) => return Checker::constant(self, scope).const_init(e, ty),
+            ast::InitKind::Array { .. } => {
+                self.wrong_form(init, ty);
+                return Init::Default;
+            }
+        };
+        let mut seen = FxHashMap::default();
+        let mut values = Vec::new();
+        for (name, value) in parts {
+            let Some(index) = fields.iter().position(|(n, _)| n.eq_ignore_ascii_case(&name.text)) else {
+                let hint = similar(&name.text, fields.iter().map(|(n, _)| n.as_str()));
+                let message = format!("{} has no component `{}`", self.type_name(ty), name.text);
+                self.push(
+                    Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, message)
+                        .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
+                );
+                continue;
+            };
+            if let Some(first) = seen.insert(index, name.span) {
+                self.push(
+                    Diagnostic::new(codes::BAD_INITIALISER, name.span, format!("`{}` is initialised twice", name.text))
+                        .also(first, "first here"),
+                );
+                continue;
+            }
+            let value = self.initial(value, fields[index].1, scope);
+            values.push((index as u32, value));
+        }
+        Init::Fields(values)
+    }
+
+    fn initial_array(&mut self, init: &'a ast::Init, elem: TypeId, count: u32, scope: Option<PouId>) -> Init {
+        let ast::InitKind::Array { elems, .. } = &init.kind else {
+            // One value without brackets for an array of one, as Ed. 2 writes it.
+            return match &init.kind {
+                ast::InitKind::Expr(e) if matches!(e.kind, ast::ExprKind::Name(_) | ast::ExprKind::Member(..)) => {
+                    let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
+                    Checker::constant(self, scope).const_init(e, ty)
+                }
+                ast::InitKind::Expr(_) if count == 1 => Init::Array(vec![(1, self.initial(init, elem, scope))]),
+                _ => {
+                    let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
+                    self.wrong_form(init, ty);
+                    Init::Default
+                }
+            };
+        };
+        let mut runs: Vec<(u32, Init)> = Vec::new();
+        let mut total: u64 = 0;
+        let mut push = |runs: &mut Vec<(u32, Init)>, n: u32, value: Init| {
+            total += u64::from(n);
+            // What is too much is reported below; the list stays small whatever the counts are.
+            if total <= u64::from(count) {
+                match runs.last_mut() {
+                    Some((m, last)) if *last == value => *m += n,
+                    _ => runs.push((n, value)),
+                }
+            }
+        };
+        for part in elems {
+            match part {
+                ast::InitElem::One(value) => {
+                    let value = self.initial(value, elem, scope);
+                    push(&mut runs, 1, value);
+                }
+                ast::InitElem::Repeat(times, values) => {
+                    let Some(n) = self.const_integer(times, scope) else { continue };
+                    if n < 0 || n > i128::from(u32::MAX) {
+                        self.push(
+                            Diagnostic::new(codes::BAD_INITIALISER, times.span, format!("{n} is no repetition count"))
+                                .help("write how many elements get the values in parentheses"),
+                        );
+                        continue;
+                    }
+                    let group: Vec<Init> = values.iter().map(|v| self.initial(v, elem, scope)).collect();
+                    match group.as_slice() {
+                        [] => push(&mut runs, n as u32, Init::Default),
+                        [one] => push(&mut runs, n as u32, one.clone()),
+                        many => {
+                            // More groups than elements change nothing but the count.
+                            for _ in 0..n.min(i128::from(count) + 1) {
+                                many.iter().for_each(|v| push(&mut runs, 1, v.clone()));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        if total > u64::from(count) {
+            self.push(
+                Diagnostic::new(
+                    codes::BAD_INITIALISER,
+                    init.span,
+                    format!("{total} initial values for {count} elements"),
+                )
+                .help("remove the surplus values or make the array larger"),
+            );
+        }
+        Init::Array(runs)
+    }
+}

@@ -1,0 +1,798 @@
+//! Unary and binary operators: which type an operation is done in, and exact arithmetic on untyped constants.
+
+use crate::body::*;
+use crate::defs::*;
+use crate::expr::*;
+use crate::rules;
+use crate::types::{Type, TypeId, Types};
+use plcc_diag::{Diagnostic, Span, codes};
+use plcc_stdlib::elem::{Elem, Family};
+use plcc_stdlib::ops::Op;
+use plcc_syntax::ast::{self, BinaryOp, UnaryOp};
+
+const BOOL: fn() -> TypeId = || Types::elem(Elem::Bool);
+
+impl<'a> Checker<'_, 'a> {
+    pub fn unary(&mut self, op: UnaryOp, operand: &'a ast::Expr, span: Span, want: Option<TypeId>) -> Operand {
+        let inner = self.operand(operand, want);
+        self.unary_operand(op, inner, operand.span, span, want)
+    }
+
+    /// A prefix operator on a checked operand, which stands at `at`.
+    pub fn unary_operand(
+        &mut self,
+        op: UnaryOp,
+        inner: Operand,
+        at: Span,
+        span: Span,
+        want: Option<TypeId>,
+    ) -> Operand {
+        match op {
+            UnaryOp::Plus => inner,
+            UnaryOp::Neg => self.negate(inner, span),
+            UnaryOp::Not => self.complement(inner, at, span, want),
+        }
+    }
+
+    fn negate(&mut self, operand: Operand, span: Span) -> Operand {
+        match operand {
+            Operand::Int(v) => Operand::Int(-v),
+            Operand::Real(v) => Operand::Real(-v),
+            Operand::Error => Operand::Error,
+            Operand::Value { expr, ty } => {
+                let Some(elem) = self.elem_of(ty).filter(|e| *e != Elem::Bool) else {
+                    return self.no_operator("-", ty, span, "it needs a number or a duration");
+                };
+                let signed = match elem.family() {
+                    Family::Signed | Family::Real | Family::Duration => elem,
+                    Family::Unsigned | Family::Bits => {
+                        let name = self.cx.type_name(ty);
+                        let strict =
+                            Diagnostic::new(codes::WRONG_OPERAND, span, format!("the negative of {name} is no {name}"))
+                                .help(format!(
+                                    "convert it to a signed type first, for example with {}",
+                                    rules::conversion_name(elem, rules::integer((elem.bits() * 2).min(64), true))
+                                ));
+                        if !self.codesys_only(span, codes::LAX_CONVERSION, strict) {
+                            return Operand::Error;
+                        }
+                        rules::integer((elem.bits() * 2).min(64), true)
+                    }
+                    _ => return self.no_operator("-", ty, span, "it needs a number or a duration"),
+                };
+                let wide = self.width(signed, span);
+                let arg = self.to_elem(expr, wide, span);
+                let kind = ExprKind::Op(Op::Neg, wide, vec![arg]);
+                let static_ty = if signed == elem { base_type(&self.cx.defs, ty) } else { Types::elem(signed) };
+                Operand::Value { expr: Expr { kind, ty: Types::elem(wide), span }, ty: static_ty }
+            }
+        }
+    }
+
+    fn complement(&mut self, inner: Operand, at: Span, span: Span, want: Option<TypeId>) -> Operand {
+        let (expr, ty) = match inner {
+            Operand::Error => return Operand::Error,
+            Operand::Value { expr, ty } => (expr, ty),
+            Operand::Int(_) | Operand::Real(_) => {
+                let place = want.filter(|w| self.elem_of(*w).is_some_and(|e| e == Elem::Bool || e.is_bits()));
+                let expr = match (place, &inner) {
+                    (Some(place), Operand::Int(_)) => self.coerce(inner, at, place),
+                    (None, Operand::Int(0 | 1)) => self.coerce(inner, at, BOOL()),
+                    _ => {
+                        let help = "it needs BOOL or a bit string, such as WORD#16#FF";
+                        return self.no_operator("NOT", Types::elem(Elem::Int), span, help);
+                    }
+                };
+                let ty = expr.ty;
+                (expr, ty)
+            }
+        };
+        if ty == Types::ERROR {
+            return Operand::Error;
+        }
+        match self.elem_of(ty) {
+            Some(elem) if elem == Elem::Bool || elem.is_bits() => {
+                let wide = self.width(elem, span);
+                let arg = self.to_elem(expr, wide, span);
+                let kind = ExprKind::Op(Op::Not, wide, vec![arg]);
+                Operand::Value { expr: Expr { kind, ty: Types::elem(wide), span }, ty: base_type(&self.cx.defs, ty) }
+            }
+            Some(elem) if elem.is_integer() => {
+                let strict = self.wrong_operand("NOT", ty, span, "it needs BOOL or a bit string");
+                if !self.codesys_only(span, codes::LAX_CONVERSION, strict) {
+                    return Operand::Error;
+                }
+                let wide = self.width(elem, span);
+                let arg = self.to_elem(expr, wide, span);
+                let kind = ExprKind::Op(
+                    Op::Xor,
+                    bits_of(wide),
+                    vec![
+                        retype(arg, Types::elem(bits_of(wide))),
+                        Expr { kind: ExprKind::Const(wide.repr().mask()), ty: Types::elem(bits_of(wide)), span },
+                    ],
+                );
+                let expr = retype(Expr { kind, ty: Types::elem(bits_of(wide)), span }, Types::elem(wide));
+                Operand::Value { expr, ty: base_type(&self.cx.defs, ty) }
+            }
+            _ => self.no_operator("NOT", ty, span, "it needs BOOL or a bit string"),
+        }
+    }
+
+    fn wrong_operand(&self, op: &str, ty: TypeId, span: Span, help: &str) -> Diagnostic {
+        let name = self.cx.type_name(ty);
+        Diagnostic::new(codes::WRONG_OPERAND, span, format!("{op} does not take {name}")).help(help)
+    }
+
+    fn no_operator(&mut self, op: &str, ty: TypeId, span: Span, help: &str) -> Operand {
+        if ty != Types::ERROR {
+            let d = self.wrong_operand(op, ty, span, help);
+            self.report(d);
+        }
+        Operand::Error
+    }
+
+    /// The type in which an operation is done: its own, or at least 32 bits in profile codesys.
+    pub fn width(&self, elem: Elem, span: Span) -> Elem {
+        if self.codesys(span) { rules::computed(elem) } else { elem }
+    }
+
+    /// An expression of elementary type as another one, without judging whether that is allowed.
+    pub fn to_elem(&mut self, expr: Expr, elem: Elem, span: Span) -> Expr {
+        let ty = Types::elem(elem);
+        match self.elem_of(expr.ty) {
+            None => expr,
+            Some(from) if from == elem => retype(expr, ty),
+            Some(from) => {
+                if let ExprKind::Const(raw) = expr.kind
+                    && let Some(raw) = crate::consts::convert(from, elem, raw)
+                {
+                    return Expr { kind: ExprKind::Const(raw), ty, span };
+                }
+                Expr { kind: ExprKind::Convert(from, elem, Box::new(expr)), ty, span }
+            }
+        }
+    }
+
+    pub fn binary(
+        &mut self,
+        op: BinaryOp,
+        at: Span,
+        left: &'a ast::Expr,
+        right: &'a ast::Expr,
+        span: Span,
+        want: Option<TypeId>,
+    ) -> Operand {
+        use BinaryOp::*;
+        let inner_want = match op {
+            Lt | Gt | Le | Ge | Eq | Ne => None,
+            AndThen | OrElse => Some(BOOL()),
+            _ => want,
+        };
+        let a = self.operand(left, inner_want);
+        // The second operand of a comparison may name a value of the first one's enumeration.
+        let other = match op {
+            Lt | Gt | Le | Ge | Eq | Ne => self.static_type(&a),
+            _ => inner_want,
+        };
+        let b = self.operand(right, other);
+        let sides = [left.span, right.span];
+        self.binary_operands(op, at, a, b, sides, span, want)
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    pub fn binary_operands(
+        &mut self,
+        op: BinaryOp,
+        at: Span,
+        a: Operand,
+        b: Operand,
+        sides: [Span; 2],
+        span: Span,
+        want: Option<TypeId>,
+    ) -> Operand {
+        use BinaryOp::*;
+        if matches!(a, Operand::Error) || matches!(b, Operand::Error) {
+            return Operand::Error;
+        }
+        match op {
+            And | Or | Xor => self.bitwise(op, a, b, sides, span, want),
+            AndThen | OrElse => {
+                let a = self.coerce(a, sides[0], BOOL());
+                let b = self.coerce(b, sides[1], BOOL());
+                let kind = match op {
+                    AndThen => ExprKind::AndThen(Box::new(a), Box::new(b)),
+                    _ => ExprKind::OrElse(Box::new(a), Box::new(b)),
+                };
+                Operand::value(kind, BOOL(), span)
+            }
+            Lt | Gt | Le | Ge | Eq | Ne => self.comparison(op, at, a, b, sides, span),
+            Add | Sub | Mul | Div | Mod => self.arithmetic(op, at, a, b, sides, span, want),
+            Power => self.power(a, b, sides, span, want),
+        }
+    }
+
+    fn bitwise(
+        &mut self,
+        op: BinaryOp,
+        a: Operand,
+        b: Operand,
+        sides: [Span; 2],
+        span: Span,
+        want: Option<TypeId>,
+    ) -> Operand {
+        let prim = match op {
+            BinaryOp::And => Op::And,
+            BinaryOp::Or => Op::Or,
+            _ => Op::Xor,
+        };
+        let (x, y) = match (&a, &b) {
+            (Operand::Int(x), Operand::Int(y)) => {
+                return Operand::Int(match op {
+                    BinaryOp::And => x & y,
+                    BinaryOp::Or => x | y,
+                    _ => x ^ y,
+                });
+            }
+            (Operand::Value { ty, .. }, Operand::Int(_) | Operand::Real(_)) => (*ty, *ty),
+            (Operand::Int(_) | Operand::Real(_), Operand::Value { ty, .. }) => (*ty, *ty),
+            (Operand::Value { ty: x, .. }, Operand::Value { ty: y, .. }) => (*x, *y),
+            _ => (want.unwrap_or(Types::elem(Elem::Lreal)), Types::elem(Elem::Lreal)),
+        };
+        if x == Types::ERROR || y == Types::ERROR {
+            return Operand::Error;
+        }
+        let (Some(ex), Some(ey)) = (self.elem_of(x), self.elem_of(y)) else {
+            let bad = if self.elem_of(x).is_none() { x } else { y };
+            return self.no_operator(op.text(), bad, span, "it needs BOOL or bit strings on both sides");
+        };
+        let logical = |e: Elem| e == Elem::Bool || e.is_bits();
+        if !logical(ex) || !logical(ey) {
+            let (bad, at) = if logical(ex) { (y, sides[1]) } else { (x, sides[0]) };
+            let bad_elem = if logical(ex) { ey } else { ex };
+            let mut d = self.wrong_operand(op.text(), bad, at, "it needs BOOL or a bit string on both sides");
+            if bad_elem.is_integer() {
+                d = d.help(format!(
+                    "convert it, for example with {}",
+                    rules::conversion_name(bad_elem, bits_of(bad_elem))
+                ));
+            }
+            let both_numbers = |e: Elem| e.is_integer() || e.is_bits();
+            if !(both_numbers(ex) && both_numbers(ey)) {
+                self.report(d);
+                return Operand::Error;
+            }
+            if !self.codesys_only(span, codes::LAX_CONVERSION, d) {
+                return Operand::Error;
+            }
+        }
+        let common =
+            if (ex == Elem::Bool) != (ey == Elem::Bool) { None } else { rules::common(ex, ey, self.codesys(span)) };
+        let Some(common) = common else { return self.no_common(op.text(), x, y, sides, span) };
+        // Integers (codesys) are combined as the bit strings of their width and stay what they are.
+        let work = bits_of(common);
+        let a = self.operand_as(a, sides[0], common);
+        let b = self.operand_as(b, sides[1], common);
+        if a.ty == Types::ERROR || b.ty == Types::ERROR {
+            return Operand::Error;
+        }
+        let wide = self.width(common, span);
+        let work = if wide == common { work } else { bits_of(wide) };
+        let a = self.to_elem(a, wide, sides[0]);
+        let b = self.to_elem(b, wide, sides[1]);
+        let kind = ExprKind::Op(prim, work, vec![retype(a, Types::elem(work)), retype(b, Types::elem(work))]);
+        let expr = retype(Expr { kind, ty: Types::elem(work), span }, Types::elem(wide));
+        Operand::Value { expr, ty: Types::elem(common) }
+    }
+
+    /// An operand for an operation in `common`: constants must fit, values convert as the profile allows; what profile
+    /// codesys computed wider stays wide.
+    fn operand_as(&mut self, operand: Operand, span: Span, common: Elem) -> Expr {
+        match operand {
+            Operand::Value { expr, ty } => {
+                let actual = self.elem_of(expr.ty).unwrap_or(common);
+                if self.codesys(span) && actual.bits() > common.bits() && actual.is_integer() == common.is_integer() {
+                    return expr;
+                }
+                // `common` was chosen so that this conversion is legal.
+                let _ = ty;
+                self.to_elem(expr, common, span)
+            }
+            constant => self.coerce(constant, span, Types::elem(common)),
+        }
+    }
+
+    fn no_common(&mut self, op: &str, x: TypeId, y: TypeId, sides: [Span; 2], span: Span) -> Operand {
+        let (nx, ny) = (self.cx.type_name(x), self.cx.type_name(y));
+        let mut d = Diagnostic::new(codes::WRONG_OPERAND, span, format!("{op} cannot combine {nx} and {ny}"))
+            .also(sides[0], format!("this is {nx}"))
+            .also(sides[1], format!("this is {ny}"));
+        if let (Some(a), Some(b)) = (self.elem_of(x), self.elem_of(y)) {
+            let enums = [x, y].iter().any(|t| matches!(self.cx.defs.types.get(*t), Type::Enum(_)));
+            if !enums {
+                d = d.help(conversion_help(a, b));
+            }
+            if a.is_integer() && b.is_integer() || a.is_bits() != b.is_bits() {
+                self.cx.codesys_only += 1;
+            }
+        }
+        self.report(d);
+        Operand::Error
+    }
+
+    fn arithmetic(
+        &mut self,
+        op: BinaryOp,
+        at: Span,
+        a: Operand,
+        b: Operand,
+        sides: [Span; 2],
+        span: Span,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if let (Some(x), Some(y)) = (exact(&a), exact(&b)) {
+            return self.exact_arithmetic(op, x, y, at, span);
+        }
+        let (ea, eb) = match self.arithmetic_elems(op, &a, &b, sides, span) {
+            Some(elems) => elems,
+            None => return Operand::Error,
+        };
+        if [ea, eb].into_iter().flatten().any(|e| e.is_time_like()) {
+            return self.time_arithmetic(op, a, b, ea, eb, sides, span);
+        }
+        let codesys = self.codesys(span);
+        let common = match (ea, eb) {
+            (Some(x), Some(y)) => rules::common(x, y, codesys),
+            (Some(x), None) => Some(self.beside_constant(x, &b, want, codesys)),
+            (None, Some(y)) => Some(self.beside_constant(y, &a, want, codesys)),
+            (None, None) => None,
+        };
+        let Some(common) = common else {
+            let (x, y) = (self.static_type(&a), self.static_type(&b));
+            return self.no_common(op.text(), x.unwrap_or(Types::ERROR), y.unwrap_or(Types::ERROR), sides, span);
+        };
+        if op == BinaryOp::Mod && common.is_real() {
+            return self.no_operator("MOD", Types::elem(common), span, "it needs integers");
+        }
+        for (operand, side) in [(&a, sides[0]), (&b, sides[1])] {
+            if let Operand::Value { ty, .. } = operand
+                && let Some(from) = self.elem_of(*ty)
+                && rules::implicit(from, common) == rules::Implicit::Rounds
+                && !matches!(operand, Operand::Value { expr, .. } if matches!(expr.kind, ExprKind::Const(_)))
+            {
+                let message = format!("{} cannot hold every {} exactly", common.name(), from.name());
+                self.report(Diagnostic::new(codes::LOSES_PRECISION, side, message).help(format!(
+                    "write {}(...) to say that this is meant, or use LREAL",
+                    rules::conversion_name(from, common)
+                )));
+            }
+        }
+        let wide = self.width(common, span);
+        let a = self.operand_as(a, sides[0], common);
+        let b = self.operand_as(b, sides[1], common);
+        if a.ty == Types::ERROR || b.ty == Types::ERROR {
+            return Operand::Error;
+        }
+        let a = self.to_elem(a, wide, sides[0]);
+        let b = self.to_elem(b, wide, sides[1]);
+        let prim = match op {
+            BinaryOp::Add => Op::Add,
+            BinaryOp::Sub => Op::Sub,
+            BinaryOp::Mul => Op::Mul,
+            BinaryOp::Div => Op::Div,
+            _ => Op::Mod,
+        };
+        if matches!(prim, Op::Div | Op::Mod) && wide.is_integer() && matches!(b.kind, ExprKind::Const(0)) {
+            return self.zero_divisor(sides[1]);
+        }
+        Operand::Value {
+            expr: Expr { kind: ExprKind::Op(prim, wide, vec![a, b]), ty: Types::elem(wide), span },
+            ty: Types::elem(common),
+        }
+    }
+
+    fn zero_divisor(&mut self, span: Span) -> Operand {
+        self.report(
+            Diagnostic::new(codes::ZERO_DIVISOR, span, "division by the constant 0")
+                .help("the divisor must not be 0; for REAL write 0.0 to get an infinity"),
+        );
+        Operand::Error
+    }
+
+    /// The numeric types of both operands (`None` for an untyped constant); bit strings count as unsigned in codesys.
+    fn arithmetic_elems(
+        &mut self,
+        op: BinaryOp,
+        a: &Operand,
+        b: &Operand,
+        sides: [Span; 2],
+        span: Span,
+    ) -> Option<(Option<Elem>, Option<Elem>)> {
+        let mut elems = [None, None];
+        for (i, operand) in [a, b].into_iter().enumerate() {
+            let Operand::Value { ty, .. } = operand else { continue };
+            if *ty == Types::ERROR {
+                return None;
+            }
+            let enumeration = matches!(self.cx.defs.types.get(*ty), Type::Enum(_));
+            let elem = self.elem_of(*ty).filter(|e| *e != Elem::Bool && e.family() != Family::Char && !enumeration);
+            match elem {
+                None => {
+                    self.no_operator(op.text(), *ty, sides[i], "it needs numbers");
+                    return None;
+                }
+                Some(elem) if elem.is_bits() => {
+                    let number = rules::as_number(elem);
+                    let strict = self
+                        .wrong_operand(op.text(), *ty, sides[i], "a bit string is no number")
+                        .help(format!("convert it with {}", rules::conversion_name(elem, number)));
+                    if !self.codesys_only(span, codes::LAX_CONVERSION, strict) {
+                        return None;
+                    }
+                    elems[i] = Some(number);
+                }
+                other => elems[i] = other,
+            }
+        }
+        Some((elems[0], elems[1]))
+    }
+
+    /// The type of an operation between a value and an untyped constant.
+    fn beside_constant(&self, elem: Elem, constant: &Operand, want: Option<TypeId>, codesys: bool) -> Elem {
+        match constant {
+            // A real literal makes the operation real: as the place asks, else LREAL.
+            Operand::Real(_) if !elem.is_real() => match want.and_then(|w| self.elem_of(w)) {
+                Some(Elem::Real) => Elem::Real,
+                _ => Elem::Lreal,
+            },
+            Operand::Int(v) if codesys && elem.is_integer() && !rules::holds(elem, *v) => {
+                let own = rules::default_integer(*v).unwrap_or(Elem::Lint);
+                rules::common(elem, own, true).unwrap_or(elem)
+            }
+            _ => elem,
+        }
+    }
+
+    fn exact_arithmetic(&mut self, op: BinaryOp, a: Exact, b: Exact, at: Span, span: Span) -> Operand {
+        let (x, y) = match (a, b) {
+            (Exact::Int(x), Exact::Int(y)) => {
+                let result = match op {
+                    BinaryOp::Add => x.checked_add(y),
+                    BinaryOp::Sub => x.checked_sub(y),
+                    BinaryOp::Mul => x.checked_mul(y),
+                    _ if y == 0 => return self.zero_divisor(span),
+                    BinaryOp::Div => x.checked_div(y),
+                    _ => x.checked_rem(y),
+                };
+                return match result {
+                    Some(v) => Operand::Int(v),
+                    None => {
+                        self.report(
+                            Diagnostic::new(codes::OUT_OF_RANGE, span, "this constant is too large")
+                                .help("the largest integer type is ULINT, up to 2^64-1"),
+                        );
+                        Operand::Error
+                    }
+                };
+            }
+            (a, b) => (a.real(), b.real()),
+        };
+        Operand::Real(match op {
+            BinaryOp::Add => x + y,
+            BinaryOp::Sub => x - y,
+            BinaryOp::Mul => x * y,
+            BinaryOp::Div => x / y,
+            _ => return self.no_operator("MOD", Types::elem(Elem::Lreal), at, "it needs integers"),
+        })
+    }
+
+    /// Durations and dates (semantics.md \[T7\]): sums and differences of nanoseconds, products with numbers.
+    #[allow(clippy::too_many_arguments)]
+    fn time_arithmetic(
+        &mut self,
+        op: BinaryOp,
+        a: Operand,
+        b: Operand,
+        ea: Option<Elem>,
+        eb: Option<Elem>,
+        sides: [Span; 2],
+        span: Span,
+    ) -> Operand {
+        use Family::*;
+        let family = |e: Option<Elem>| e.map(Elem::family);
+        let long = |e: Option<Elem>| matches!(e, Some(Elem::Ltime | Elem::Ldate | Elem::Ltod | Elem::Ldt));
+        let time = |long: bool| if long { Elem::Ltime } else { Elem::Time };
+        let number = |e: Option<Elem>| e.is_none_or(|e| e.is_integer() || e.is_real());
+        let result = match (op, family(ea), family(eb)) {
+            (BinaryOp::Add | BinaryOp::Sub, Some(Duration), Some(Duration)) => Some(time(long(ea) || long(eb))),
+            (BinaryOp::Add | BinaryOp::Sub, Some(TimeOfDay | DateTime), Some(Duration)) => ea,
+            (BinaryOp::Sub, Some(x @ (Date | TimeOfDay | DateTime)), Some(y)) if x == y => {
+                Some(time(long(ea) || long(eb)))
+            }
+            (BinaryOp::Mul, Some(Duration), _) if number(eb) => {
+                return self.scale(Op::TimeMul, a, b, ea, eb, sides, span);
+            }
+            (BinaryOp::Mul, _, Some(Duration)) if number(ea) => {
+                return self.scale(Op::TimeMul, b, a, eb, ea, [sides[1], sides[0]], span);
+            }
+            (BinaryOp::Div, Some(Duration), _) if number(eb) => {
+                return self.scale(Op::TimeDiv, a, b, ea, eb, sides, span);
+            }
+            _ => None,
+        };
+        let Some(result) = result else {
+            let name = |c: &Checker, o: &Operand| match o {
+                Operand::Value { ty, .. } => c.cx.type_name(*ty),
+                _ => "a number".into(),
+            };
+            let message = format!("{} cannot combine {} and {}", op.text(), name(self, &a), name(self, &b));
+            self.report(Diagnostic::new(codes::WRONG_OPERAND, span, message).help(
+                "durations add to durations, times of day and dates with time; dates of one kind subtract; \
+                 a duration may be multiplied and divided by a number",
+            ));
+            return Operand::Error;
+        };
+        let prim = if op == BinaryOp::Add { Op::Add } else { Op::Sub };
+        let a = self.settle(a, sides[0]);
+        let b = self.settle(b, sides[1]);
+        // All of them are nanoseconds in 64 bits: the operation is that of TIME.
+        let args = vec![retype(a, Types::elem(Elem::Time)), retype(b, Types::elem(Elem::Time))];
+        let sum = Expr { kind: ExprKind::Op(prim, Elem::Time, args), ty: Types::elem(Elem::Time), span };
+        let ty = Types::elem(result);
+        Operand::Value { expr: retype(sum, ty), ty }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn scale(
+        &mut self,
+        op: Op,
+        time: Operand,
+        factor: Operand,
+        time_elem: Option<Elem>,
+        factor_elem: Option<Elem>,
+        sides: [Span; 2],
+        span: Span,
+    ) -> Operand {
+        let ty = Types::elem(time_elem.unwrap_or(Elem::Time));
+        let time = self.settle(time, sides[0]);
+        let factor = self.settle(factor, sides[1]);
+        // Whole numbers are widened to 64 bits, reals to LREAL: one formula for each.
+        let by = match factor_elem.or(self.elem_of(factor.ty)) {
+            Some(e) if e.is_real() => Elem::Lreal,
+            Some(Elem::Ulint) => Elem::Ulint,
+            _ => Elem::Lint,
+        };
+        if op == Op::TimeDiv && by != Elem::Lreal && matches!(factor.kind, ExprKind::Const(0)) {
+            return self.zero_divisor(sides[1]);
+        }
+        let factor = self.to_elem(factor, by, sides[1]);
+        Operand::value(ExprKind::Op(op, by, vec![time, factor]), ty, span)
+    }
+
+    fn comparison(&mut self, op: BinaryOp, at: Span, a: Operand, b: Operand, sides: [Span; 2], span: Span) -> Operand {
+        let prim = match op {
+            BinaryOp::Lt => Op::Lt,
+            BinaryOp::Gt => Op::Gt,
+            BinaryOp::Le => Op::Le,
+            BinaryOp::Ge => Op::Ge,
+            BinaryOp::Eq => Op::Eq,
+            _ => Op::Ne,
+        };
+        let equality = matches!(prim, Op::Eq | Op::Ne);
+        if let (Some(x), Some(y)) = (exact(&a), exact(&b)) {
+            let order = match (x, y) {
+                (Exact::Int(x), Exact::Int(y)) => Some(x.cmp(&y)),
+                (x, y) => x.real().partial_cmp(&y.real()),
+            };
+            let holds = order.is_some_and(|o| match op {
+                BinaryOp::Lt => o.is_lt(),
+                BinaryOp::Gt => o.is_gt(),
+                BinaryOp::Le => o.is_le(),
+                BinaryOp::Ge => o.is_ge(),
+                BinaryOp::Eq => o.is_eq(),
+                _ => o.is_ne(),
+            });
+            return Operand::value(ExprKind::Const(u64::from(holds)), BOOL(), span);
+        }
+        let (x, y) = (self.static_type(&a), self.static_type(&b));
+        if x == Some(Types::ERROR) || y == Some(Types::ERROR) {
+            return Operand::Error;
+        }
+        if let (Some(x), Some(y)) = (x, y)
+            && let Some(result) = self.special_comparison(prim, equality, &a, &b, x, y, sides, span)
+        {
+            return result;
+        }
+        let codesys = self.codesys(span);
+        let mut elems = [None, None];
+        for (i, ty) in [x, y].into_iter().enumerate() {
+            let Some(ty) = ty else { continue };
+            let enumeration = matches!(self.cx.defs.types.get(ty), Type::Enum(_));
+            match self.elem_of(ty) {
+                Some(_) if enumeration => {
+                    // The other side is no value of this enumeration: a constant or another type.
+                    let (x, y) = (x.unwrap_or(Types::elem(Elem::Int)), y.unwrap_or(Types::elem(Elem::Int)));
+                    return self.no_common(op.text(), x, y, sides, span);
+                }
+                Some(Elem::Bool) if !equality => {
+                    return self.no_operator(op.text(), ty, sides[i], "BOOL has no order; use = or <>");
+                }
+                Some(elem) if elem.is_bits() && !equality => {
+                    let number = rules::as_number(elem);
+                    let strict = self
+                        .wrong_operand(op.text(), ty, sides[i], "a bit string has no order")
+                        .help(format!("convert it with {}", rules::conversion_name(elem, number)));
+                    if !self.codesys_only(span, codes::LAX_CONVERSION, strict) {
+                        return Operand::Error;
+                    }
+                    elems[i] = Some(number);
+                }
+                Some(elem) => elems[i] = Some(elem),
+                None => return self.no_operator(op.text(), ty, sides[i], "only elementary values can be compared"),
+            }
+        }
+        let common = match (elems[0], elems[1]) {
+            (Some(x), Some(y)) => rules::common(x, y, codesys),
+            (Some(x), None) => Some(self.beside_constant(x, &b, None, codesys)),
+            (None, Some(y)) => Some(self.beside_constant(y, &a, None, codesys)),
+            (None, None) => None,
+        };
+        let Some(common) = common else {
+            return self.no_common(op.text(), x.unwrap_or(Types::ERROR), y.unwrap_or(Types::ERROR), sides, span);
+        };
+        let (untyped_a, untyped_b) = (x.is_none(), y.is_none());
+        let mut a = self.operand_as(a, sides[0], common);
+        let mut b = self.operand_as(b, sides[1], common);
+        if a.ty == Types::ERROR || b.ty == Types::ERROR {
+            return Operand::Error;
+        }
+        // Profile codesys may have computed one side wider: compare there.
+        let wide = match (self.elem_of(a.ty), self.elem_of(b.ty)) {
+            (Some(x), Some(y)) if x != y => {
+                if x.bits() >= y.bits() {
+                    x
+                } else {
+                    y
+                }
+            }
+            (Some(x), _) => x,
+            _ => common,
+        };
+        a = self.to_elem(a, wide, sides[0]);
+        b = self.to_elem(b, wide, sides[1]);
+        if equality && wide.is_real() {
+            let zero = |e: &Expr, untyped: bool| untyped && matches!(e.kind, ExprKind::Const(0));
+            if !zero(&a, untyped_a) && !zero(&b, untyped_b) {
+                self.report(
+                    Diagnostic::new(codes::REAL_EQUALITY, at, format!("{} compares reals for equality", op.text()))
+                        .help("rounding makes this unreliable; compare the distance: ABS(a - b) < limit"),
+                );
+            }
+        }
+        Operand::value(ExprKind::Op(prim, wide, vec![a, b]), BOOL(), span)
+    }
+
+    /// Comparisons of what is not a plain elementary type: enumerations, references, strings.
+    #[allow(clippy::too_many_arguments)]
+    fn special_comparison(
+        &mut self,
+        op: Op,
+        equality: bool,
+        a: &Operand,
+        b: &Operand,
+        x: TypeId,
+        y: TypeId,
+        sides: [Span; 2],
+        span: Span,
+    ) -> Option<Operand> {
+        let pair = |a: &Operand, b: &Operand| match (a, b) {
+            (Operand::Value { expr: a, .. }, Operand::Value { expr: b, .. }) => Some((a.clone(), b.clone())),
+            _ => None,
+        };
+        let types = &self.cx.defs.types;
+        let elem = match (types.get(x), types.get(y)) {
+            (Type::Enum(i), Type::Enum(j)) if i == j => self.cx.defs.enums[*i].base,
+            (Type::Ref { .. } | Type::Null, Type::Ref { .. } | Type::Null) if equality => {
+                let same = match (types.get(x), types.get(y)) {
+                    (Type::Ref { target: a, .. }, Type::Ref { target: b, .. }) => a == b,
+                    _ => true,
+                };
+                if !same {
+                    return Some(self.no_common("=", x, y, sides, span));
+                }
+                Elem::Udint
+            }
+            (Type::String { .. } | Type::AnyString { .. }, Type::String { .. } | Type::AnyString { .. }) => {
+                return Some(self.not_yet(span, "comparing strings"));
+            }
+            _ => return None,
+        };
+        let (a, b) = pair(a, b)?;
+        let ty = Types::elem(elem);
+        let args = vec![retype(a, ty), retype(b, ty)];
+        Some(Operand::value(ExprKind::Op(op, elem, args), BOOL(), span))
+    }
+
+    /// A feature whose place is laid but that is not built.
+    pub fn not_yet(&mut self, span: Span, what: &str) -> Operand {
+        self.report(Diagnostic::new(codes::NOT_YET, span, format!("{what} is not implemented yet")));
+        Operand::Error
+    }
+
+    /// `**`: the real base's type; an integer base becomes REAL (up to 16 bit) or LREAL (\[T5\]).
+    fn power(&mut self, a: Operand, b: Operand, sides: [Span; 2], span: Span, want: Option<TypeId>) -> Operand {
+        if let (Some(x), Some(y)) = (exact(&a), exact(&b)) {
+            return Operand::Real(x.real().powf(y.real()));
+        }
+        let Some((ea, _)) = self.arithmetic_elems(BinaryOp::Power, &a, &b, sides, span) else { return Operand::Error };
+        let base = match (ea, want.and_then(|w| self.elem_of(w))) {
+            (Some(e), _) if e.is_real() => e,
+            (Some(e), _) if e.is_integer() => {
+                if e.bits() <= 16 {
+                    Elem::Real
+                } else {
+                    Elem::Lreal
+                }
+            }
+            (None, Some(Elem::Real)) => Elem::Real,
+            (None, _) => Elem::Lreal,
+            (Some(e), _) => return self.no_operator("**", Types::elem(e), sides[0], "it needs numbers"),
+        };
+        let a = self.settle(a, sides[0]);
+        let b = self.settle(b, sides[1]);
+        if self.elem_of(b.ty).is_some_and(|e| e.is_time_like()) {
+            return self.no_operator("**", b.ty, sides[1], "it needs numbers");
+        }
+        if a.ty == Types::ERROR || b.ty == Types::ERROR {
+            return Operand::Error;
+        }
+        let a = self.to_elem(a, base, sides[0]);
+        let b = self.to_elem(b, base, sides[1]);
+        Operand::value(ExprKind::Op(Op::Power, base, vec![a, b]), Types::elem(base), span)
+    }
+}
+
+/// An untyped constant.
+#[derive(Clone, Copy)]
+enum Exact {
+    Int(i128),
+    Real(f64),
+}
+
+impl Exact {
+    fn real(self) -> f64 {
+        match self {
+            Exact::Int(v) => v as f64,
+            Exact::Real(v) => v,
+        }
+    }
+}
+
+fn exact(operand: &Operand) -> Option<Exact> {
+    match operand {
+        Operand::Int(v) => Some(Exact::Int(*v)),
+        Operand::Real(v) => Some(Exact::Real(*v)),
+        _ => None,
+    }
+}
+
+/// The bit string of an integer's width; bit strings and BOOL unchanged.
+pub(crate) fn bits_of(elem: Elem) -> Elem {
+    if !elem.is_integer() {
+        return elem;
+    }
+    match elem.bits() {
+        8 => Elem::Byte,
+        16 => Elem::Word,
+        32 => Elem::Dword,
+        _ => Elem::Lword,
+    }
+}
+
+/// The static type of an operation's result: a subrange's base, other types unchanged.
+fn base_type(defs: &Defs, ty: TypeId) -> TypeId {
+    match defs.types.get(ty) {
+        Type::Subrange { base, .. } => Types::elem(*base),
+        _ => ty,
+    }
+}
