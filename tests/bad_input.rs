@@ -38,7 +38,12 @@ fn binary_junk() {
             })
             .collect();
         let done = check(&junk);
-        assert!(done.code == 1 || done.code == 0, "size {size}: exit {} {}", done.code, &done.stderr[..done.stderr.len().min(400)]);
+        assert!(
+            done.code == 1 || done.code == 0,
+            "size {size}: exit {} {}",
+            done.code,
+            &done.stderr[..done.stderr.len().min(400)]
+        );
     }
 }
 
@@ -73,8 +78,16 @@ fn sources_that_are_not_utf8_are_latin1() {
 
 #[test]
 fn cycles() {
-    one("TYPE A : STRUCT b : B; END_STRUCT; B : STRUCT a : A; END_STRUCT; END_TYPE\nPROGRAM Main\nVAR x : A; END_VAR\nEND_PROGRAM\n", "E0304", 1);
-    one("FUNCTION_BLOCK F\nVAR g : G; END_VAR\nEND_FUNCTION_BLOCK\nFUNCTION_BLOCK G\nVAR f : ARRAY [1..2] OF F; END_VAR\nEND_FUNCTION_BLOCK\n", "E0304", 5);
+    one(
+        "TYPE A : STRUCT b : B; END_STRUCT; B : STRUCT a : A; END_STRUCT; END_TYPE\nPROGRAM Main\nVAR x : A; END_VAR\nEND_PROGRAM\n",
+        "E0304",
+        1,
+    );
+    one(
+        "FUNCTION_BLOCK F\nVAR g : G; END_VAR\nEND_FUNCTION_BLOCK\nFUNCTION_BLOCK G\nVAR f : ARRAY [1..2] OF F; END_VAR\nEND_FUNCTION_BLOCK\n",
+        "E0304",
+        5,
+    );
     one("TYPE A : B; B : A; END_TYPE\nPROGRAM Main\nVAR x : A; END_VAR\nEND_PROGRAM\n", "E0304", 1);
     one("VAR_GLOBAL CONSTANT\na : INT := b;\nb : INT := a;\nEND_VAR\nPROGRAM Main\nEND_PROGRAM\n", "E0305", 2);
 }

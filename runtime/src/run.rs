@@ -41,7 +41,10 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     let stimulus = flags.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose()?;
     // A watch list alone is read on standard output.
     let trace_path = flags.trace.as_deref().or(flags.watch.as_ref().map(|_| Path::new("-")));
-    let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(|e| (if e.is_empty() { 0 } else { 3 }, e))?;
+    let trace = trace_path
+        .map(|path| Trace::open(path, columns))
+        .transpose()
+        .map_err(|e| (if e.is_empty() { 0 } else { 3 }, e))?;
     signals::install();
     let mut mem = Region::new(image.region_bytes as usize);
     engine.init(&mut mem, true);

@@ -16,7 +16,8 @@ impl Stats {
     /// Empty.
     pub fn new(tasks: &[Task]) -> Self {
         // The bounds are constants that the crate accepts.
-        let histogram = || Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| unreachable!("fixed bounds"));
+        let histogram =
+            || Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| unreachable!("fixed bounds"));
         Self { tasks: tasks.iter().map(|_| histogram()).collect() }
     }
 

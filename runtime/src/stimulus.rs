@@ -71,7 +71,10 @@ impl Stimulus {
             if let Some((before, _)) = rows.last()
                 && *before >= cycle
             {
-                return Err(format!("{}: cycle {cycle} comes after cycle {before}; rows are in rising order", at(line, 1)));
+                return Err(format!(
+                    "{}: cycle {cycle} comes after cycle {before}; rows are in rising order",
+                    at(line, 1)
+                ));
             }
             if record.len() > leaves.len() + 1 {
                 let place = at(line, column(&record, leaves.len() + 1));
@@ -84,7 +87,11 @@ impl Stimulus {
                     continue;
                 }
                 let bytes = resolver.bytes(leaf, text).map_err(|e| {
-                    format!("{}: {}: {e}", at(line, column(&record, n + 1)), header.get(n + 1).unwrap_or_default().trim())
+                    format!(
+                        "{}: {}: {e}",
+                        at(line, column(&record, n + 1)),
+                        header.get(n + 1).unwrap_or_default().trim()
+                    )
                 })?;
                 writes.push(Write { offset: leaf.offset, bit: leaf.bit, bytes });
             }
@@ -119,7 +126,14 @@ mod tests {
     use plcc_stdlib::elem::Elem;
 
     fn image() -> Image {
-        let root = |name: &str, offset, constant| Root { name: name.into(), offset, bit: None, ty: 0, constant, retain: false };
+        let root = |name: &str, offset, constant| Root {
+            name: name.into(),
+            offset,
+            bit: None,
+            ty: 0,
+            constant,
+            retain: false,
+        };
         Image {
             types: vec![TypeDesc::Elem(Elem::Int.code())],
             roots: vec![root("M.a", 64, false), root("M.b", 66, false), root("M.c", 68, true)],

@@ -76,7 +76,8 @@ mod tests {
 
     #[test]
     fn due_tasks_run_by_priority_then_declaration() {
-        let tasks = [task("slow", Some(30), 5), task("fast", Some(10), 1), task("", None, 0), task("same", Some(30), 5)];
+        let tasks =
+            [task("slow", Some(30), 5), task("fast", Some(10), 1), task("", None, 0), task("same", Some(30), 5)];
         assert_eq!(runs(&tasks, 10, 4), ["fast slow same ", "fast ", "fast ", "fast slow same "]);
         assert_eq!(base_tick(&tasks), 10_000_000);
         assert_eq!(base_tick(&tasks[2..3]), 10_000_000);

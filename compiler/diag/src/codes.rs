@@ -260,13 +260,6 @@ F := 1;\n\
 ACTION Act : F := 2; END_ACTION\n\
 END_FUNCTION\n\
 ```\n";
-    RESULT_TYPE "E0212" Error "a result type where none can be" "\
-Only a FUNCTION has a result.\n\
-\n\
-```st\n\
-FUNCTION_BLOCK Fb : INT\n\
-END_FUNCTION_BLOCK\n\
-```\n";
     BAD_ADDRESS "E0213" Error "an address is wrong" "\
 A located variable is declared `AT %` with an area (I, Q, M), a size (X B W D L) and a number; for X a bit may follow. The number counts units of its own size: `%MW1` is bytes 2 and 3.\n\
 \n\
@@ -618,7 +611,7 @@ A statement assigns (`:=`), calls or controls. `=` compares.\n\
 ```st\n\
 PROGRAM Main\n\
 VAR x : INT; END_VAR\n\
-x = 5;\n\
+x + 5;\n\
 END_PROGRAM\n\
 ```\n";
     CASE_LABEL "E0333" Error "a CASE label is wrong" "\

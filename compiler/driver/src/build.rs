@@ -87,10 +87,7 @@ fn text(result: Result<String, plcc_codegen::CodegenError>) -> String {
 
 /// `-o`, `[build] output`, or the project's name in the current folder.
 fn output_path(args: &BuildArgs, project: &Project) -> PathBuf {
-    args.output
-        .clone()
-        .or_else(|| project.build.output.clone())
-        .unwrap_or_else(|| PathBuf::from(&project.name))
+    args.output.clone().or_else(|| project.build.output.clone()).unwrap_or_else(|| PathBuf::from(&project.name))
 }
 
 fn with_suffix(path: &Path, suffix: &str) -> PathBuf {

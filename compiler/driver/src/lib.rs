@@ -1,8 +1,8 @@
 //! The driver: command line, project file, pipeline, rendering, linking. Among the compiler's crates only this one reads
 //! files, prints, or ends the process.
 
-pub mod cli;
 mod build;
+pub mod cli;
 mod engines;
 mod explain;
 mod failure;

@@ -28,8 +28,11 @@ pub struct Compiled {
     pub image: Image,
 }
 
+/// Project, texts, and the profile of each of the user's files.
+pub type Loaded = (Project, SourceMap, Vec<(FileId, Profile)>);
+
 /// load: project and paths to texts.
-pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profile)>), Failure> {
+pub fn load(args: &SourceArgs) -> Result<Loaded, Failure> {
     let project = project::load(args)?;
     let mut sources = SourceMap::new();
     let mut ids = Vec::new();
@@ -74,11 +77,12 @@ pub fn compile(
     code: &CodeArgs,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
-    let (program, layout) = plcc_mir::lower::lower(&checked.defs, app, 0, checks, false)
-        .map_err(|e| too_large(e, &parsed.sources))?;
+    let (program, layout) =
+        plcc_mir::lower::lower(&checked.defs, app, 0, checks, false).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
-        plcc_diag::bug!("the verifier found:\n{}\n{}",
+        plcc_diag::bug!(
+            "the verifier found:\n{}\n{}",
             problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
             plcc_mir::print::program(&program, None)
         );

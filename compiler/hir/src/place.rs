@@ -339,9 +339,9 @@ impl<'a> Checker<'_, 'a> {
                     let args = vec![retype(expr, Types::elem(elem)), limit];
                     let low =
                         Expr { kind: ExprKind::Op(plcc_stdlib::ops::Op::Min, elem, args), ty: Types::elem(elem), span };
-                    return Some(self.to_elem(low, Elem::Lint, span));
+                    return Some(self.with_elem(low, Elem::Lint, span));
                 }
-                Some(self.to_elem(expr, Elem::Lint, span))
+                Some(self.with_elem(expr, Elem::Lint, span))
             }
             Some(elem) if elem.is_bits() => {
                 if !self.codesys(span) {
@@ -354,8 +354,8 @@ impl<'a> Checker<'_, 'a> {
                     );
                 }
                 let number = crate::rules::as_number(elem);
-                let expr = self.to_elem(expr, number, span);
-                Some(self.to_elem(expr, Elem::Lint, span))
+                let expr = self.with_elem(expr, number, span);
+                Some(self.with_elem(expr, Elem::Lint, span))
             }
             _ if ty == Types::ERROR => None,
             _ => {

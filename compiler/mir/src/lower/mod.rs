@@ -17,6 +17,7 @@ mod path;
 mod place;
 pub mod reach;
 mod stmt;
+mod string;
 mod task;
 
 use crate::ir::{FuncId, Program, Source, SourceId};
@@ -113,3 +114,6 @@ struct Context<'a> {
     /// The first function whose frame is too large.
     too_large: Option<TooLarge>,
 }
+
+#[cfg(test)]
+mod tests;

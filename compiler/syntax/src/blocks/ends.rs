@@ -99,18 +99,14 @@ impl Blocks<'_, '_> {
     fn after_end(&mut self, block: Block, end: u32) {
         let next = self.peek(0).kind;
         match block {
-            _ if block.is_statement() => {
-                if next != Tok::Semi {
-                    if let Some(t) = self.out.last() {
-                        self.bare_ends.push(*t);
-                    }
-                    self.emit(Token::inserted(Tok::Semi, end));
+            _ if block.is_statement() && next != Tok::Semi => {
+                if let Some(t) = self.out.last() {
+                    self.bare_ends.push(*t);
                 }
+                self.emit(Token::inserted(Tok::Semi, end));
             }
-            Block::Struct | Block::Union => {
-                if !matches!(next, Tok::Semi | Tok::Assign) {
-                    self.emit(Token::inserted(Tok::Semi, end));
-                }
+            Block::Struct | Block::Union if !matches!(next, Tok::Semi | Tok::Assign) => {
+                self.emit(Token::inserted(Tok::Semi, end));
             }
             _ if next == Tok::Semi => self.at += 1,
             _ => {}
@@ -212,7 +208,7 @@ impl Blocks<'_, '_> {
     pub(super) fn split_end(&mut self) -> bool {
         let t = self.peek(0);
         let text = t.text(self.text);
-        if text.len() < 3 || !text[..3].eq_ignore_ascii_case("END") {
+        if !text.get(..3).is_some_and(|t| t.eq_ignore_ascii_case("END")) {
             return false;
         }
         let (length, block) = if text.len() == 3 {
