@@ -181,11 +181,6 @@ impl fmt::Display for Value {
     }
 }
 
-/// A register value as the trace shows it: `TRUE`, `-3`, `16#FF`, `0.1`, `T#1s500ms`, `D#2024-01-31`.
-pub fn format_scalar(elem: Elem, raw: u64) -> String {
-    Value::Scalar { elem, raw }.to_string()
-}
-
 /// Writes a register value as the trace shows it; never allocates.
 pub fn write_scalar(out: &mut dyn Write, elem: Elem, raw: u64) -> fmt::Result {
     match elem.family() {
@@ -277,21 +272,6 @@ fn write_time(out: &mut dyn Write, ns: i64) -> fmt::Result {
         write!(out, ".{fraction:0digits$}")?;
     }
     Ok(())
-}
-
-/// A STRING's characters as a literal in single quotes.
-pub fn format_string(characters: &[u8]) -> String {
-    let mut out = String::with_capacity(characters.len() + 2);
-    // Writing to a String cannot fail.
-    let _ = write_string(&mut out, characters);
-    out
-}
-
-/// A WSTRING's units as a literal in double quotes.
-pub fn format_wstring(units: &[u16]) -> String {
-    let mut out = String::with_capacity(units.len() + 2);
-    let _ = write_wstring(&mut out, units);
-    out
 }
 
 /// A STRING as a literal in single quotes.
