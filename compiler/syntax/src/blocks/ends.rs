@@ -108,6 +108,9 @@ impl Blocks<'_, '_> {
             Block::Struct | Block::Union if !matches!(next, Tok::Semi | Tok::Assign) => {
                 self.emit(Token::inserted(Tok::Semi, end));
             }
+            // Their `;` is part of the grammar.
+            Block::Struct | Block::Union => {}
+            _ if block.is_statement() => {}
             _ if next == Tok::Semi => self.at += 1,
             _ => {}
         }
