@@ -47,7 +47,7 @@ impl Stats {
             let rows: Vec<String> = rows
                 .map(|(name, [cycles, min, mean, p50, p99, p999, max])| {
                     format!(
-                        "{{\"task\":\"{name}\",\"executions\":{cycles},\"min_ns\":{min},\"mean_ns\":{mean},\"p50_ns\":{p50},\
+                        "{{\"task\":\"{name}\",\"cycles\":{cycles},\"min_ns\":{min},\"mean_ns\":{mean},\"p50_ns\":{p50},\
                          \"p99_ns\":{p99},\"p99_9_ns\":{p999},\"max_ns\":{max}}}"
                     )
                 })
@@ -56,7 +56,7 @@ impl Stats {
         }
         let mut out = format!(
             "{:<16}{:>12}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
-            "task [ns]", "executions", "min", "mean", "p50", "p99", "p99.9", "max"
+            "task [ns]", "cycles", "min", "mean", "p50", "p99", "p99.9", "max"
         );
         for (name, [cycles, rest @ ..]) in rows {
             out.push_str(&format!("{name:<16}{cycles:>12}"));
