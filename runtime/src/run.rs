@@ -12,6 +12,7 @@ use crate::task::{Schedule, base_tick};
 use crate::trace::{self, Trace};
 use crate::watchdog::Watchdog;
 use crate::{fault, signals};
+use std::io::Write;
 use std::path::Path;
 
 /// Runs it; messages go to standard error.
@@ -67,7 +68,17 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     };
     let end = scan.run();
     if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
-        eprint!("{}", stats.report(&image.tasks, scan.clock.overruns(), format == "json"));
+        let missed_ticks = scan.clock.overruns();
+        let overruns: Vec<u64> =
+            (0..image.tasks.len()).map(|n| scan.schedule.skipped(n).unwrap_or(missed_ticks)).collect();
+        let report = stats.report(&image.tasks, &overruns, format == "json");
+        // A result; but where the trace is on standard output, nothing else may stand there.
+        if trace_path == Some(Path::new("-")) {
+            eprint!("{report}");
+        } else {
+            // A reader that went away does not matter any more.
+            let _ = std::io::stdout().write_all(report.as_bytes());
+        }
     }
     match end {
         End::Stopped => Ok(0),

@@ -12,6 +12,8 @@ pub struct Schedule {
     order: Vec<usize>,
     intervals: Vec<Option<i64>>,
     due: Vec<i64>,
+    /// Releases of each task that no tick came in time for.
+    skipped: Vec<u64>,
 }
 
 /// The base tick: the greatest common divisor of the intervals.
@@ -31,7 +33,17 @@ impl Schedule {
         let mut order: Vec<usize> = (0..tasks.len()).collect();
         // Programs without a task (an unnamed one) come last, whatever its priority says.
         order.sort_by_key(|n| (tasks[*n].name.is_empty(), tasks[*n].priority, *n));
-        Self { order, intervals: tasks.iter().map(|t| t.interval_ns).collect(), due: vec![0; tasks.len()] }
+        Self {
+            order,
+            intervals: tasks.iter().map(|t| t.interval_ns).collect(),
+            due: vec![0; tasks.len()],
+            skipped: vec![0; tasks.len()],
+        }
+    }
+
+    /// Releases of a task that were left out; `None` for a task without an interval.
+    pub fn skipped(&self, task: usize) -> Option<u64> {
+        self.intervals.get(task)?.map(|_| self.skipped[task])
     }
 
     /// Calls `run` for each task that is due at `now`, in order; stops at the first error.
@@ -45,6 +57,7 @@ impl Schedule {
                 // The next due time behind now; releases that a long tick skipped are not made up for.
                 let behind = (now - self.due[n]) / interval;
                 self.due[n] += (behind + 1) * interval;
+                self.skipped[n] += behind as u64;
             }
             run(n)?;
         }
@@ -88,5 +101,19 @@ mod tests {
     fn a_task_runs_in_the_first_tick_at_or_after_its_due_time() {
         let tasks = [task("t", Some(25), 0)];
         assert_eq!(runs(&tasks, 10, 8), ["t", "", "", "t", "", "t", "", ""]);
+    }
+
+    #[test]
+    fn releases_behind_a_long_tick_are_counted_not_made_up_for() {
+        let mut schedule = Schedule::new(&[task("t", Some(10), 0), task("", None, 0)]);
+        let mut count = 0;
+        for ms in [0, 10, 45, 50] {
+            let _: Result<(), ()> = schedule.release(ms * 1_000_000, |t| {
+                count += u32::from(t == 0);
+                Ok(())
+            });
+        }
+        // 20 and 30 have passed when 45 comes; 40 runs then, 50 on its own.
+        assert_eq!((count, schedule.skipped(0), schedule.skipped(1)), (4, Some(2), None));
     }
 }
