@@ -75,10 +75,11 @@ pub fn compile(
     project: &Project,
     parsed: &Parsed,
     code: &CodeArgs,
+    all: bool,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
     let (program, layout) =
-        plcc_mir::lower::lower(&checked.defs, app, 0, checks, false).map_err(|e| too_large(e, &parsed.sources))?;
+        plcc_mir::lower::lower(&checked.defs, app, 0, checks, all).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
         plcc_diag::bug!(

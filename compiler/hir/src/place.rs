@@ -200,7 +200,8 @@ impl<'a> Checker<'_, 'a> {
                 (base.ty != Types::ERROR).then_some(base)
             }
             Type::Instance(pou) => {
-                let found = self.cx.pou_slots[pou].scope.get(&self.pin_name(pou, name)).copied();
+                let key = self.pin_name(pou, name);
+                let found = self.cx.pou_slots[pou].scope.get(&key).copied();
                 let Some(Local::Var(var)) = found else {
                     let names = self.cx.defs.pous[pou].vars.iter().map(|v| &self.cx.defs.vars[*v]);
                     let names = names.filter(|v| matches!(v.section, Section::Input | Section::Output));

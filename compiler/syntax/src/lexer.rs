@@ -315,3 +315,6 @@ impl Lexer<'_, '_, '_> {
         self.bad_until = self.at;
     }
 }
+
+#[cfg(test)]
+mod tests;
