@@ -1,11 +1,22 @@
-//! Runs compiled applications: tasks, process image, clock, stimulus, trace, faults, watchdog.
+//! What runs a compiled program: scan loop, tasks, clock, process image, stimulus, trace, faults.
 //!
-//! It knows no compiler and no particular engine: an [`image::Image`] says what there is, an [`engine::Engine`] executes,
-//! [`cli::RunFlags`] say how. `plcc run` and linked programs (through [`entry`]) go the same way.
+//! It is linked into every program that plcc builds and into plcc itself (for `plcc run`), so that both behave alike. It
+//! knows no compiler crate and no engine: an engine is whatever implements [`engine::Engine`], a program is an
+//! [`image::Image`].
 
 pub mod cli;
+mod clock;
 pub mod engine;
+pub mod entry;
+mod fault;
 pub mod image;
+pub mod path;
+mod process_image;
 pub mod run;
-#[cfg(test)]
-mod testing;
+mod scan;
+mod signals;
+mod stats;
+mod stimulus;
+mod task;
+mod trace;
+mod watchdog;

@@ -1,11 +1,190 @@
-//! Runs an application: image, engine and flags to an exit code.
+//! Runs an application as the flags say; the result is the exit code of docs/cli.md.
 
 use crate::cli::RunFlags;
-use crate::engine::Engine;
+use crate::clock::Clock;
+use crate::engine::{Engine, Region};
 use crate::image::Image;
+use crate::path::Resolver;
+use crate::scan::{End, Scan};
+use crate::stats::Stats;
+use crate::stimulus::Stimulus;
+use crate::task::{Schedule, base_tick};
+use crate::trace::{self, Trace};
+use crate::watchdog::Watchdog;
+use crate::{fault, signals};
+use std::path::Path;
 
-/// Runs until `--cycles`, a signal or a fault; prints its own messages. The exit code of docs/cli.md.
+/// Runs it; messages go to standard error.
 pub fn run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> u8 {
-    let _ = (image, engine, flags);
-    2
+    match prepare_and_run(image, engine, flags) {
+        Ok(code) => code,
+        Err((code, message)) => {
+            if !message.is_empty() {
+                eprintln!("{}: {message}", image.name);
+            }
+            code
+        }
+    }
+}
+
+fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> Result<u8, (u8, String)> {
+    for (flag, given) in [("--vcd", flags.vcd.is_some()), ("--retain", flags.retain.is_some())] {
+        if given {
+            return Err((2, format!("{flag} is not implemented yet")));
+        }
+    }
+    let resolver = Resolver::new(image);
+    let columns = match (&flags.trace, &flags.watch) {
+        (None, None) => Vec::new(),
+        (_, watch) => trace::columns(watch.as_deref(), &resolver).map_err(|e| (2, e))?,
+    };
+    let stimulus = flags.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose()?;
+    // A watch list alone is read on standard output.
+    let trace_path = flags.trace.as_deref().or(flags.watch.as_ref().map(|_| Path::new("-")));
+    let trace = trace_path
+        .map(|path| Trace::open(path, columns))
+        .transpose()
+        .map_err(|e| (if e.is_empty() { 0 } else { 3 }, e))?;
+    signals::install();
+    let mut mem = Region::new(image.region_bytes as usize);
+    engine.init(&mut mem, true);
+    // SAFETY: `mem` lives to the end of this function, behind the watchdog's drop: it is declared before.
+    let watchdog = unsafe { Watchdog::new(mem.as_mut_ptr()) }
+        .map_err(|e| (3, format!("cannot start the watchdog thread: {e}")))?;
+    let interval_ns = flags.interval.unwrap_or_else(|| base_tick(&image.tasks));
+    let mut scan = Scan {
+        image,
+        resolver: &resolver,
+        engine,
+        mem: &mut mem,
+        watchdog: &watchdog,
+        clock: Clock::new(flags.virtual_time, interval_ns),
+        schedule: Schedule::new(&image.tasks),
+        stimulus,
+        trace,
+        stats: flags.stats.as_ref().map(|_| Stats::new(&image.tasks)),
+        cycles: flags.cycles,
+    };
+    let end = scan.run();
+    if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
+        eprint!("{}", stats.report(&image.tasks, scan.clock.overruns(), format == "json"));
+    }
+    match end {
+        End::Stopped => Ok(0),
+        End::Fault(number, task, cycle) => {
+            eprint!("{}", fault::describe(image, scan.mem, number, task, cycle));
+            Ok(1)
+        }
+        End::Trace(message) if message.is_empty() => Ok(0),
+        End::Trace(message) => Err((3, message)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::{Root, Source, Task, TypeDesc};
+    use plcc_stdlib::elem::Elem;
+    use plcc_stdlib::fault::Fault;
+    use plcc_stdlib::region;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    /// Counts in an INT at byte 64; faults when it reaches a limit; runs without end when it is negative.
+    struct Counter {
+        limit: i16,
+    }
+
+    impl Engine for Counter {
+        fn init(&mut self, mem: &mut Region, _cold: bool) {
+            mem.as_mut_slice()[64] = 1;
+        }
+        fn scan(&mut self, mem: &mut Region, _task: u32, now_ns: i64) -> u32 {
+            let m = mem.as_mut_slice();
+            m[region::CLOCK_NS as usize..][..8].copy_from_slice(&now_ns.to_le_bytes());
+            let value = i16::from_le_bytes([m[64], m[65]]);
+            if value < 0 {
+                let flag = m[region::DEADLINE_FLAG as usize..].as_mut_ptr().cast::<u32>();
+                // SAFETY: the header is aligned, and the region outlives this call.
+                let flag = unsafe { AtomicU32::from_ptr(flag) };
+                while flag.load(Ordering::Relaxed) == 0 {
+                    std::hint::spin_loop();
+                }
+                return Fault::Deadline.number();
+            }
+            if value == self.limit {
+                return Fault::IndexOutOfBounds.number();
+            }
+            m[64..66].copy_from_slice(&(value + 1).to_le_bytes());
+            0
+        }
+    }
+
+    fn image() -> Image {
+        let root = Root { name: "M.n".into(), offset: 64, bit: None, ty: 0, constant: false, retain: false };
+        Image {
+            name: "test".into(),
+            region_bytes: 128,
+            types: vec![TypeDesc::Elem(Elem::Int.code())],
+            roots: vec![root],
+            tasks: vec![Task { name: String::new(), interval_ns: None, priority: 0, watchdog_ns: 30_000_000 }],
+            files: vec!["m.st".into()],
+            sources: vec![Source { file: 0, line: 3, column: 5, pou: "M".into(), what: "a".into() }],
+            ..Image::default()
+        }
+    }
+
+    fn scratch(name: &str) -> std::path::PathBuf {
+        std::env::temp_dir().join(format!("plcc-runtime-{}-{name}", std::process::id()))
+    }
+
+    #[test]
+    fn traces_stimulates_and_stops_at_a_fault() {
+        let (trace, stimulus) = (scratch("trace.csv"), scratch("stimulus.csv"));
+        std::fs::write(&stimulus, "cycle,M.n\n3,10\n").unwrap();
+        let flags = RunFlags {
+            cycles: Some(9),
+            virtual_time: true,
+            trace: Some(trace.clone()),
+            stimulus: Some(stimulus.clone()),
+            watch: Some("m.N".into()),
+            ..RunFlags::default()
+        };
+        assert_eq!(run(&image(), &mut Counter { limit: 12 }, &flags), 1);
+        assert_eq!(std::fs::read_to_string(&trace).unwrap(), "cycle,m.N\n1,2\n2,3\n3,11\n4,12\n");
+        let _ = (std::fs::remove_file(trace), std::fs::remove_file(stimulus));
+    }
+
+    #[test]
+    fn an_endless_execution_becomes_a_fault_in_virtual_time_too() {
+        let stimulus = scratch("endless.csv");
+        std::fs::write(&stimulus, "cycle,M.n\n2,-1\n").unwrap();
+        let flags =
+            RunFlags { cycles: Some(9), virtual_time: true, stimulus: Some(stimulus.clone()), ..RunFlags::default() };
+        let start = std::time::Instant::now();
+        assert_eq!(run(&image(), &mut Counter { limit: -9 }, &flags), 1);
+        assert!(start.elapsed() >= std::time::Duration::from_millis(30));
+        let _ = std::fs::remove_file(stimulus);
+    }
+
+    #[test]
+    fn wrong_names_and_files_end_before_the_first_cycle() {
+        let watch = |name: &str| RunFlags { watch: Some(name.into()), cycles: Some(1), ..RunFlags::default() };
+        assert_eq!(run(&image(), &mut Counter { limit: -9 }, &watch("M.x")), 2);
+        let trace = RunFlags { trace: Some("no/such/folder/t.csv".into()), ..watch("M.n") };
+        assert_eq!(run(&image(), &mut Counter { limit: -9 }, &trace), 3);
+    }
+
+    #[test]
+    fn a_fault_is_told_with_place_values_and_cycle() {
+        let mut mem = Region::new(128);
+        let m = mem.as_mut_slice();
+        for (n, v) in [7i64, 1, 5].iter().enumerate() {
+            m[region::FAULT_OPERANDS as usize + 8 * n..][..8].copy_from_slice(&v.to_le_bytes());
+        }
+        let text = fault::describe(&image(), &mem, Fault::IndexOutOfBounds.number(), 0, 4);
+        assert_eq!(
+            text,
+            "error[E0602]: index out of bounds\n  --> m.st:3:5\n  in M\n  index of `a` is 7, its bounds are 1..5\n  cycle 4\n"
+        );
+    }
 }

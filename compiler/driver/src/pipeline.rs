@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::project::{self, Project};
 use plcc_diag::{Diagnostics, FileId, SourceMap};
 use plcc_hir::{Application, Checked, Profile, Unit};
-use plcc_mir::{Checks, Layout, ir};
+use plcc_mir::ir;
+use plcc_mir::lower::Checks;
 use plcc_runtime::image::Image;
 use plcc_syntax::ast;
 
@@ -23,14 +24,15 @@ pub struct Parsed {
 pub struct Compiled {
     /// Code.
     pub program: ir::Program,
-    /// Where variables lie.
-    pub layout: Layout,
     /// What the runtime must know.
     pub image: Image,
 }
 
+/// Project, texts, and the profile of each of the user's files.
+pub type Loaded = (Project, SourceMap, Vec<(FileId, Profile)>);
+
 /// load: project and paths to texts.
-pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profile)>), Failure> {
+pub fn load(args: &SourceArgs) -> Result<Loaded, Failure> {
     let project = project::load(args)?;
     let mut sources = SourceMap::new();
     let mut ids = Vec::new();
@@ -45,7 +47,7 @@ pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profi
 pub fn parse(mut sources: SourceMap, ids: &[(FileId, Profile)]) -> Parsed {
     let mut diags = Diagnostics::new();
     let mut files = Vec::new();
-    for (name, text) in plcc_stdlib::blocks::sources() {
+    for (name, text) in plcc_stdlib::blocks::blocks() {
         let id = sources.add_builtin(format!("<{name}>"), *text);
         files.push((id, Profile::Strict, true, plcc_syntax::parse_file(id, text, Profile::Strict, &mut diags)));
     }
@@ -71,23 +73,40 @@ pub fn compile(
     checked: &Checked,
     app: &Application,
     project: &Project,
-    sources: &SourceMap,
+    parsed: &Parsed,
     code: &CodeArgs,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
-    let (program, layout) = plcc_mir::lower(&checked.defs, app, 0, checks)
-        .map_err(|e| Failure { code: 1, message: format!("error[E0312]: {e}") })?;
+    let (program, layout) =
+        plcc_mir::lower::lower(&checked.defs, app, 0, checks, false).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
-        plcc_diag::bug!("the verifier found:\n{}\n{}", problems.join("\n"), plcc_mir::print::program(&program));
+        plcc_diag::bug!(
+            "the verifier found:\n{}\n{}",
+            problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
+            plcc_mir::print::program(&program, None)
+        );
     }
-    let image = crate::image::build(&checked.defs, app, &layout, &program, project, sources)?;
-    Ok(Compiled { program, layout, image })
+    let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
+    Ok(Compiled { program, image })
+}
+
+/// The variables do not fit: the one mistake that shows only after checking.
+fn too_large(error: plcc_mir::layout::TooLarge, sources: &SourceMap) -> Failure {
+    let place = error.span.map(|s| format!("{}: ", sources.position(s))).unwrap_or_default();
+    let message = format!(
+        "{place}error[{}]: {} needs {} bytes, a resource has less than {}",
+        plcc_diag::codes::TOO_LARGE,
+        error.what,
+        error.bytes,
+        plcc_mir::layout::MAX_REGION_BYTES
+    );
+    Failure { code: 1, message }
 }
 
 /// `--checks`, else `[build] checks`, else all.
 fn checks(project: &Project, code: &CodeArgs) -> Result<Checks, Failure> {
-    let mut checks = Checks::all();
+    let mut checks = Checks::ALL;
     if let Some(table) = &project.build.checks {
         checks.index = table.index.unwrap_or(true);
         checks.division = table.division.unwrap_or(true);
@@ -97,10 +116,10 @@ fn checks(project: &Project, code: &CodeArgs) -> Result<Checks, Failure> {
     }
     match code.checks.as_deref() {
         None => {}
-        Some("all") => checks = Checks::all(),
-        Some("none") => checks = Checks::none(),
+        Some("all") => checks = Checks::ALL,
+        Some("none") => checks = Checks::NONE,
         Some(list) => {
-            checks = Checks::none();
+            checks = Checks::NONE;
             for name in list.split(',') {
                 match name.trim() {
                     "index" => checks.index = true,

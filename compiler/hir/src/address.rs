@@ -46,6 +46,11 @@ pub fn parse(text: &str) -> Result<Address, String> {
     Ok(Address { area, byte: byte as u32, bit })
 }
 
+/// An address and the bytes that it covers (0 for a bit).
+pub fn parse_with_width(text: &str) -> Result<(Address, u32), String> {
+    parse(text).map(|a| (a, width(text)))
+}
+
 /// Bytes from the address on that a direct use of it covers, from its size letter; 0 for a bit.
 pub fn width(text: &str) -> u32 {
     match text.chars().nth(2).map(|c| c.to_ascii_uppercase()) {

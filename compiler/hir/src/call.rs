@@ -132,10 +132,7 @@ impl<'a> Checker<'_, 'a> {
                     let place = Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span };
                     return self.instance_callee(place);
                 }
-                if ty == Types::ERROR
-                    && !self.cx.pous.contains_key(&key)
-                    && plcc_stdlib::funcs::find(&key).is_none()
-                {
+                if ty == Types::ERROR && !self.cx.pous.contains_key(&key) && plcc_stdlib::funcs::find(&key).is_none() {
                     return Target::Reported;
                 }
             }
@@ -182,9 +179,14 @@ impl<'a> Checker<'_, 'a> {
             return Target::Reported;
         }
         let pous = self.cx.pous.iter().filter(|(_, p)| self.cx.defs.pous[**p].kind == PouKind::Function);
-        let names = pous.map(|(n, _)| n.as_str()).chain(plcc_stdlib::funcs::names());
-        let locals = self.scope.map(|s| self.cx.pou_slots[s].scope.keys().map(|k| k.as_str()).collect::<Vec<_>>());
-        let hint = similar(&name.text, names.chain(locals.unwrap_or_default()));
+        let mut names: Vec<&str> = pous.map(|(n, _)| n.as_str()).collect();
+        for name in plcc_stdlib::funcs::names() {
+            names.push(name);
+        }
+        if let Some(scope) = self.scope {
+            names.extend(self.cx.pou_slots[scope].scope.keys().map(|k| k.as_str()));
+        }
+        let hint = similar(&name.text, names.into_iter());
         self.report(
             Diagnostic::new(
                 codes::UNKNOWN_FUNCTION,
@@ -232,15 +234,8 @@ impl<'a> Checker<'_, 'a> {
     }
 
     fn user_call(&mut self, callee: Callee, pou: PouId, call: &'a ast::Call, span: Span) -> Option<Call> {
-        let mut out = Call {
-            callee,
-            inputs: Vec::new(),
-            in_outs: Vec::new(),
-            outputs: Vec::new(),
-            en: None,
-            eno: None,
-            span,
-        };
+        let mut out =
+            Call { callee, inputs: Vec::new(), in_outs: Vec::new(), outputs: Vec::new(), en: None, eno: None, span };
         let mut fine = true;
         if self.cx.defs.pous[pou].kind == PouKind::Action {
             if let Some(arg) = call.args.first() {
@@ -499,36 +494,40 @@ impl<'a> Checker<'_, 'a> {
         }
         if negated && self.elem_of(ty) != Some(Elem::Bool) {
             let name = self.cx.type_name(ty);
-            self.report(
-                Diagnostic::new(codes::WRONG_OPERAND, target.span, format!("NOT needs a BOOL output, this is {name}")),
-            );
+            self.report(Diagnostic::new(
+                codes::WRONG_OPERAND,
+                target.span,
+                format!("NOT needs a BOOL output, this is {name}"),
+            ));
             return None;
         }
         let convert = if ty == place.ty {
             None
         } else {
             match (self.elem_of(ty), self.elem_of(place.ty)) {
-                (Some(from), Some(to)) if !self.is_enum(ty) && !self.is_enum(place.ty) => match rules::implicit(from, to) {
-                    Implicit::Same => None,
-                    Implicit::Exact | Implicit::Rounds => Some((from, to)),
-                    how => {
-                        let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
-                        let d = Diagnostic::new(
-                            codes::TYPE_MISMATCH,
-                            target.span,
-                            format!("the output is {have}, this variable is {want}"),
-                        )
-                        .help(conversion_help(from, to));
-                        if how == Implicit::No {
-                            self.report(d);
-                            return None;
+                (Some(from), Some(to)) if !self.is_enum(ty) && !self.is_enum(place.ty) => {
+                    match rules::implicit(from, to) {
+                        Implicit::Same => None,
+                        Implicit::Exact | Implicit::Rounds => Some((from, to)),
+                        how => {
+                            let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
+                            let d = Diagnostic::new(
+                                codes::TYPE_MISMATCH,
+                                target.span,
+                                format!("the output is {have}, this variable is {want}"),
+                            )
+                            .help(conversion_help(from, to));
+                            if how == Implicit::No {
+                                self.report(d);
+                                return None;
+                            }
+                            if !self.codesys_only(target.span, codes::LAX_CONVERSION, d) {
+                                return None;
+                            }
+                            Some((from, to))
                         }
-                        if !self.codesys_only(target.span, codes::LAX_CONVERSION, d) {
-                            return None;
-                        }
-                        Some((from, to))
                     }
-                },
+                }
                 _ => {
                     let strings = |t| match self.cx.defs.types.get(t) {
                         Type::String { wide, .. } => Some(*wide),

@@ -70,11 +70,9 @@ pub(crate) fn configure<'a>(cx: &mut Cx<'a>, units: &[Unit<'a>], selection: &Sel
 }
 
 fn without_configuration(cx: &mut Cx, selection: &Selection) -> Option<Application> {
-    let programs: Vec<PouId> =
-        cx.defs.pous.indices().filter(|p| cx.defs.pous[*p].kind == PouKind::Program).collect();
-    let find = |cx: &Cx, name: &str| {
-        programs.iter().copied().find(|p| cx.defs.pous[*p].name.eq_ignore_ascii_case(name))
-    };
+    let programs: Vec<PouId> = cx.defs.pous.indices().filter(|p| cx.defs.pous[*p].kind == PouKind::Program).collect();
+    let find =
+        |cx: &Cx, name: &str| programs.iter().copied().find(|p| cx.defs.pous[*p].name.eq_ignore_ascii_case(name));
     let nowhere = Span::new(FileId(0), 0, 0);
     let instance = |cx: &Cx, pou: PouId, task: usize| Program {
         name: cx.defs.pous[pou].name.clone(),
@@ -140,7 +138,13 @@ fn without_configuration(cx: &mut Cx, selection: &Selection) -> Option<Applicati
 
 /// The task of programs without one: runs last in every base tick.
 fn free_task() -> Task {
-    Task { name: Default::default(), interval_ns: None, single: None, priority: u32::MAX, watchdog_ns: DEFAULT_WATCHDOG_NS }
+    Task {
+        name: Default::default(),
+        interval_ns: None,
+        single: None,
+        priority: u32::MAX,
+        watchdog_ns: DEFAULT_WATCHDOG_NS,
+    }
 }
 
 fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<Application> {
@@ -156,8 +160,12 @@ fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<
     }
     if config.resources.len() > 1 {
         cx.push(
-            Diagnostic::new(codes::NOT_YET, config.resources[1].span.before(), "several RESOURCEs are not implemented yet")
-                .help("put all programs into one RESOURCE for now"),
+            Diagnostic::new(
+                codes::NOT_YET,
+                config.resources[1].span.before(),
+                "several RESOURCEs are not implemented yet",
+            )
+            .help("put all programs into one RESOURCE for now"),
         );
         return None;
     }
@@ -165,7 +173,7 @@ fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<
         let resource = resource(cx, decl);
         app.resources.push(resource);
     }
-    if app.resources.iter().all(|r| r.programs.is_empty()) {
+    if config.resources.iter().all(|r| r.programs.is_empty()) {
         cx.push(
             Diagnostic::new(codes::NO_PROGRAM, config.name.span, "this CONFIGURATION runs no program")
                 .help("add `PROGRAM P1 WITH Task1 : Main;`"),
@@ -267,7 +275,11 @@ fn task<'a>(cx: &mut Cx<'a>, decl: &'a ast::TaskDecl) -> Task {
                 let hint = similar(&name.text, ["INTERVAL", "PRIORITY", "SINGLE"].into_iter());
                 cx.push(
                     Diagnostic::new(codes::BAD_TASK, name.span, format!("a TASK has no property `{}`", name.text))
-                        .help(hint.map_or("it has INTERVAL, PRIORITY and SINGLE".into(), |h| format!("did you mean `{h}`?"))),
+                        .help(
+                            hint.map_or("it has INTERVAL, PRIORITY and SINGLE".into(), |h| {
+                                format!("did you mean `{h}`?")
+                            }),
+                        ),
                 );
             }
         }
@@ -293,7 +305,11 @@ fn program<'a>(cx: &mut Cx<'a>, decl: &'a ast::ProgramDecl, task: usize) -> Opti
         }
     };
     if let Some((fb, _)) = decl.fb_tasks.first() {
-        cx.push(Diagnostic::new(codes::NOT_YET, fb.span, "a task for a function block instance is not implemented yet"));
+        cx.push(Diagnostic::new(
+            codes::NOT_YET,
+            fb.span,
+            "a task for a function block instance is not implemented yet",
+        ));
     }
     let mut program = Program {
         name: decl.name.text.clone(),
@@ -364,7 +380,9 @@ fn output_fits(cx: &mut Cx, ty: TypeId, place: &Place) -> bool {
         return ty != Types::ERROR;
     }
     let same = match (cx.elem_of(ty), cx.elem_of(place.ty)) {
-        (Some(a), Some(b)) => rules::implicit(a, b) == Implicit::Same && !matches!(cx.defs.types.get(ty), Type::Enum(_)),
+        (Some(a), Some(b)) => {
+            rules::implicit(a, b) == Implicit::Same && !matches!(cx.defs.types.get(ty), Type::Enum(_))
+        }
         _ => false,
     };
     if same {
@@ -381,4 +399,3 @@ fn output_fits(cx: &mut Cx, ty: TypeId, place: &Place) -> bool {
     cx.push(d);
     false
 }
-

@@ -14,12 +14,13 @@ impl<'a> Checker<'_, 'a> {
         match why {
             NotConstant::Reported => {}
             NotConstant::Varies(span) => self.report(
-                Diagnostic::new(codes::NOT_CONSTANT, span, "this is known only at run time, a constant is needed").help(
-                    match reads {
+                Diagnostic::new(codes::NOT_CONSTANT, span, "this is known only at run time, a constant is needed")
+                    .help(match reads {
                         Reads::Constants => "use literals and variables declared CONSTANT",
-                        Reads::Initials => "an initial value is computed from literals, constants and other initial values",
-                    },
-                ),
+                        Reads::Initials => {
+                            "an initial value is computed from literals, constants and other initial values"
+                        }
+                    }),
             ),
             NotConstant::Faults(span, fault) => {
                 let code = match fault {

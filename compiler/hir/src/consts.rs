@@ -8,10 +8,9 @@ use crate::init::Init;
 use crate::types::{Type, TypeId};
 use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
-use plcc_stdlib::emit::{Emit, Val};
+use plcc_stdlib::emit::Val;
 use plcc_stdlib::fault::Fault;
-use plcc_stdlib::prim::{self, PrimOp, Repr};
-use plcc_stdlib::rt::RtFn;
+use plcc_stdlib::fold::Folder;
 use plcc_stdlib::{convert as conversions, ops};
 
 /// Why an expression has no constant value.
@@ -34,56 +33,15 @@ pub(crate) enum Reads {
     Initials,
 }
 
-/// An [`Emit`] that computes.
-#[derive(Default)]
-struct Fold {
-    values: Vec<u64>,
-    fault: Option<Fault>,
-    varies: bool,
-}
-
-impl Fold {
-    fn push(&mut self, raw: u64) -> Val {
-        self.values.push(raw);
-        Val(self.values.len() as u32 - 1)
-    }
-    fn get(&self, v: Val) -> u64 {
-        self.values[v.0 as usize]
-    }
-}
-
-impl Emit for Fold {
-    fn constant(&mut self, repr: Repr, raw: u64) -> Val {
-        self.push(raw & repr.mask())
-    }
-    fn prim(&mut self, op: PrimOp, repr: Repr, args: &[Val]) -> Val {
-        let args: Vec<u64> = args.iter().map(|a| self.get(*a)).collect();
-        self.push(prim::eval(op, repr, &args))
-    }
-    fn check(&mut self, ok: Val, fault: Fault, _: &[Val]) {
-        if self.get(ok) == 0 && self.fault.is_none() {
-            self.fault = Some(fault);
-        }
-    }
-    fn call(&mut self, f: &'static RtFn, args: &[Val]) -> Val {
-        let args: Vec<u64> = args.iter().map(|a| self.get(*a)).collect();
-        self.push((f.eval)(&args))
-    }
-    fn clock(&mut self) -> Option<Val> {
-        self.varies = true;
-        None
-    }
-}
-
 /// Computes one formula on constant operands.
-fn fold(args: &[u64], formula: impl FnOnce(&mut Fold, &[Val]) -> Option<Val>) -> Result<u64, Option<Fault>> {
-    let mut fold = Fold::default();
-    let vals: Vec<Val> = args.iter().map(|a| fold.push(*a)).collect();
-    let result = formula(&mut fold, &vals);
-    match (fold.fault, result) {
-        (Some(fault), _) => Err(Some(fault)),
-        (None, Some(v)) if !fold.varies => Ok(fold.get(v)),
-        _ => Err(None),
+fn fold(args: &[u64], formula: impl FnOnce(&mut Folder, &[Val]) -> Option<Val>) -> Result<u64, Option<Fault>> {
+    let mut folder = Folder::new();
+    let vals: Vec<Val> = args.iter().map(|a| folder.value(*a)).collect();
+    let result = formula(&mut folder, &vals);
+    match (folder.fault(), result) {
+        (Some((fault, _)), _) => Err(Some(fault)),
+        (None, Some(v)) => Ok(folder.raw(v)),
+        (None, None) => Err(None),
     }
 }
 
@@ -118,10 +76,18 @@ impl Cx<'_> {
                 formula(fold(&args, |f, v| func.emit(*elem, v, f)))
             }
             ExprKind::AndThen(a, b) => {
-                if self.eval(a, reads)? == 0 { Ok(0) } else { self.eval(b, reads) }
+                if self.eval(a, reads)? == 0 {
+                    Ok(0)
+                } else {
+                    self.eval(b, reads)
+                }
             }
             ExprKind::OrElse(a, b) => {
-                if self.eval(a, reads)? != 0 { Ok(1) } else { self.eval(b, reads) }
+                if self.eval(a, reads)? != 0 {
+                    Ok(1)
+                } else {
+                    self.eval(b, reads)
+                }
             }
             ExprKind::RangeCheck { value, low, high, .. } => {
                 let raw = self.eval(value, reads)?;

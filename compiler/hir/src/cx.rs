@@ -77,8 +77,6 @@ pub(crate) enum Local {
 pub(crate) struct PouSlot<'a> {
     pub scope: FxHashMap<SmolStr, Local>,
     pub body: Option<&'a ast::Body>,
-    /// From its opening to its END word.
-    pub span: Span,
 }
 
 pub(crate) struct Cx<'a> {

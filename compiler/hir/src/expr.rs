@@ -7,6 +7,7 @@ use crate::body::*;
 use crate::cx::*;
 use crate::defs::*;
 use crate::init::Init;
+use crate::place::Found;
 use crate::rules::{self, Implicit};
 use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
@@ -179,7 +180,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                 (Some(from), Some(elem)) => {
                     let expr = self.convert(expr, from, elem, ty, target, span);
                     match to {
-                        Type::Subrange { low, high, .. } => self.into_subrange(expr, ty, low, high, target, span),
+                        Type::Subrange { low, high, .. } => self.narrowed_to(expr, ty, low, high, target, span),
                         _ => expr,
                     }
                 }
@@ -252,15 +253,16 @@ impl<'c, 'a> Checker<'c, 'a> {
         if let ExprKind::Op(Op::Add | Op::Sub | Op::Mul | Op::Shl, _, args) = &expr.kind
             && !args.iter().all(|a| matches!(a.kind, ExprKind::Const(_)))
         {
-            let message = format!("this is computed in {} and wraps there before it becomes {}", from.name(), to.name());
-            self.report(Diagnostic::new(codes::WRAPS_FIRST, span, message).help(format!(
-                "convert an operand first, for example with {}",
-                rules::conversion_name(from, to)
-            )));
+            let message =
+                format!("this is computed in {} and wraps there before it becomes {}", from.name(), to.name());
+            self.report(
+                Diagnostic::new(codes::WRAPS_FIRST, span, message)
+                    .help(format!("convert an operand first, for example with {}", rules::conversion_name(from, to))),
+            );
         }
     }
 
-    fn into_subrange(&mut self, expr: Expr, from: TypeId, low: i128, high: i128, target: TypeId, span: Span) -> Expr {
+    fn narrowed_to(&mut self, expr: Expr, from: TypeId, low: i128, high: i128, target: TypeId, span: Span) -> Expr {
         if let Type::Subrange { low: l, high: h, .. } = self.cx.defs.types.get(from)
             && *l >= low
             && *h <= high
@@ -305,7 +307,10 @@ impl<'c, 'a> Checker<'c, 'a> {
             (Type::Enum(_), Type::Enum(_)) => d = d.help("values of different enumerations do not mix"),
             (Type::Enum(id), Type::Elem(b)) => {
                 let base = self.cx.defs.enums[*id].base;
-                d = d.help(format!("an enumeration is no number; {}(...) converts it", rules::conversion_name(base, *b)));
+                d = d.help(format!(
+                    "an enumeration is no number; {}(...) converts it",
+                    rules::conversion_name(base, *b)
+                ));
             }
             (Type::Elem(_), Type::Enum(id)) => {
                 let names: Vec<&str> =
@@ -474,9 +479,7 @@ impl<'c, 'a> Checker<'c, 'a> {
         };
         let def = &self.cx.defs.enums[id];
         match def.values.iter().find(|(n, _, _)| n.eq_ignore_ascii_case(&value.text)) {
-            Some((_, number, _)) => {
-                Operand::value(ExprKind::Const(*number as u64 & def.base.repr().mask()), ty, span)
-            }
+            Some((_, number, _)) => Operand::value(ExprKind::Const(*number as u64 & def.base.repr().mask()), ty, span),
             None => {
                 let hint = similar(&value.text, def.values.iter().map(|(n, _, _)| n.as_str()));
                 let d = Diagnostic::new(
@@ -515,6 +518,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                         let mask = self.cx.defs.enums[*id].base.repr().mask();
                         Operand::value(ExprKind::Const(*number as u64 & mask), ty, name.span)
                     }
+                    _ if !self.cx.first_report(self.scope, &format!("value {}", name.text)) => Operand::Error,
                     _ => {
                         let names: Vec<String> = values
                             .iter()

@@ -36,8 +36,7 @@ impl<'a> Cx<'a> {
             _ => Init::Default,
         };
         let written = self.var_slots[var].decl.and_then(|(_, init)| init);
-        let (ty, owner, section) =
-            (self.defs.vars[var].ty, self.defs.vars[var].owner, self.defs.vars[var].section);
+        let (ty, owner, section) = (self.defs.vars[var].ty, self.defs.vars[var].owner, self.defs.vars[var].section);
         self.defs.vars[var].init = match written {
             Some(init) if section == Section::InOut => {
                 self.push(
@@ -131,12 +130,8 @@ impl<'a> Cx<'a> {
             };
             if let Some(first) = seen.insert(index, name.span) {
                 self.push(
-                    Diagnostic::new(
-                        codes::BAD_INITIALISER,
-                        name.span,
-                        format!("`{}` is initialised twice", name.text),
-                    )
-                    .also(first, "first here"),
+                    Diagnostic::new(codes::BAD_INITIALISER, name.span, format!("`{}` is initialised twice", name.text))
+                        .also(first, "first here"),
                 );
                 continue;
             }

@@ -4,7 +4,7 @@
 //! In: syntax trees of all files. Out: [`Defs`] with checked bodies and the [`Application`]. Memory layout, code and files
 //! are the business of others.
 
-mod address;
+pub mod address;
 pub mod app;
 pub mod body;
 mod body_check;

@@ -15,10 +15,22 @@ const BOOL: fn() -> TypeId = || Types::elem(Elem::Bool);
 impl<'a> Checker<'_, 'a> {
     pub fn unary(&mut self, op: UnaryOp, operand: &'a ast::Expr, span: Span, want: Option<TypeId>) -> Operand {
         let inner = self.operand(operand, want);
+        self.unary_operand(op, inner, operand.span, span, want)
+    }
+
+    /// A prefix operator on a checked operand, which stands at `at`.
+    pub fn unary_operand(
+        &mut self,
+        op: UnaryOp,
+        inner: Operand,
+        at: Span,
+        span: Span,
+        want: Option<TypeId>,
+    ) -> Operand {
         match op {
             UnaryOp::Plus => inner,
             UnaryOp::Neg => self.negate(inner, span),
-            UnaryOp::Not => self.complement(inner, operand.span, span, want),
+            UnaryOp::Not => self.complement(inner, at, span, want),
         }
     }
 
@@ -35,15 +47,12 @@ impl<'a> Checker<'_, 'a> {
                     Family::Signed | Family::Real | Family::Duration => elem,
                     Family::Unsigned | Family::Bits => {
                         let name = self.cx.type_name(ty);
-                        let strict = Diagnostic::new(
-                            codes::WRONG_OPERAND,
-                            span,
-                            format!("the negative of {name} is no {name}"),
-                        )
-                        .help(format!(
-                            "convert it to a signed type first, for example with {}",
-                            rules::conversion_name(elem, rules::integer((elem.bits() * 2).min(64), true))
-                        ));
+                        let strict =
+                            Diagnostic::new(codes::WRONG_OPERAND, span, format!("the negative of {name} is no {name}"))
+                                .help(format!(
+                                    "convert it to a signed type first, for example with {}",
+                                    rules::conversion_name(elem, rules::integer((elem.bits() * 2).min(64), true))
+                                ));
                         if !self.codesys_only(span, codes::LAX_CONVERSION, strict) {
                             return Operand::Error;
                         }
@@ -52,7 +61,7 @@ impl<'a> Checker<'_, 'a> {
                     _ => return self.no_operator("-", ty, span, "it needs a number or a duration"),
                 };
                 let wide = self.width(signed, span);
-                let arg = self.to_elem(expr, wide, span);
+                let arg = self.with_elem(expr, wide, span);
                 let kind = ExprKind::Op(Op::Neg, wide, vec![arg]);
                 let static_ty = if signed == elem { base_type(&self.cx.defs, ty) } else { Types::elem(signed) };
                 Operand::Value { expr: Expr { kind, ty: Types::elem(wide), span }, ty: static_ty }
@@ -84,7 +93,7 @@ impl<'a> Checker<'_, 'a> {
         match self.elem_of(ty) {
             Some(elem) if elem == Elem::Bool || elem.is_bits() => {
                 let wide = self.width(elem, span);
-                let arg = self.to_elem(expr, wide, span);
+                let arg = self.with_elem(expr, wide, span);
                 let kind = ExprKind::Op(Op::Not, wide, vec![arg]);
                 Operand::Value { expr: Expr { kind, ty: Types::elem(wide), span }, ty: base_type(&self.cx.defs, ty) }
             }
@@ -94,11 +103,15 @@ impl<'a> Checker<'_, 'a> {
                     return Operand::Error;
                 }
                 let wide = self.width(elem, span);
-                let arg = self.to_elem(expr, wide, span);
-                let kind = ExprKind::Op(Op::Xor, bits_of(wide), vec![
-                    retype(arg, Types::elem(bits_of(wide))),
-                    Expr { kind: ExprKind::Const(wide.repr().mask()), ty: Types::elem(bits_of(wide)), span },
-                ]);
+                let arg = self.with_elem(expr, wide, span);
+                let kind = ExprKind::Op(
+                    Op::Xor,
+                    bits_of(wide),
+                    vec![
+                        retype(arg, Types::elem(bits_of(wide))),
+                        Expr { kind: ExprKind::Const(wide.repr().mask()), ty: Types::elem(bits_of(wide)), span },
+                    ],
+                );
                 let expr = retype(Expr { kind, ty: Types::elem(bits_of(wide)), span }, Types::elem(wide));
                 Operand::Value { expr, ty: base_type(&self.cx.defs, ty) }
             }
@@ -125,7 +138,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// An expression of elementary type as another one, without judging whether that is allowed.
-    pub fn to_elem(&mut self, expr: Expr, elem: Elem, span: Span) -> Expr {
+    pub fn with_elem(&mut self, expr: Expr, elem: Elem, span: Span) -> Expr {
         let ty = Types::elem(elem);
         match self.elem_of(expr.ty) {
             None => expr,
@@ -239,7 +252,10 @@ impl<'a> Checker<'_, 'a> {
             let bad_elem = if logical(ex) { ey } else { ex };
             let mut d = self.wrong_operand(op.text(), bad, at, "it needs BOOL or a bit string on both sides");
             if bad_elem.is_integer() {
-                d = d.help(format!("convert it, for example with {}", rules::conversion_name(bad_elem, bits_of(bad_elem))));
+                d = d.help(format!(
+                    "convert it, for example with {}",
+                    rules::conversion_name(bad_elem, bits_of(bad_elem))
+                ));
             }
             let both_numbers = |e: Elem| e.is_integer() || e.is_bits();
             if !(both_numbers(ex) && both_numbers(ey)) {
@@ -250,11 +266,8 @@ impl<'a> Checker<'_, 'a> {
                 return Operand::Error;
             }
         }
-        let common = if (ex == Elem::Bool) != (ey == Elem::Bool) {
-            None
-        } else {
-            rules::common(ex, ey, self.codesys(span))
-        };
+        let common =
+            if (ex == Elem::Bool) != (ey == Elem::Bool) { None } else { rules::common(ex, ey, self.codesys(span)) };
         let Some(common) = common else { return self.no_common(op.text(), x, y, sides, span) };
         // Integers (codesys) are combined as the bit strings of their width and stay what they are.
         let work = bits_of(common);
@@ -265,8 +278,8 @@ impl<'a> Checker<'_, 'a> {
         }
         let wide = self.width(common, span);
         let work = if wide == common { work } else { bits_of(wide) };
-        let a = self.to_elem(a, wide, sides[0]);
-        let b = self.to_elem(b, wide, sides[1]);
+        let a = self.with_elem(a, wide, sides[0]);
+        let b = self.with_elem(b, wide, sides[1]);
         let kind = ExprKind::Op(prim, work, vec![retype(a, Types::elem(work)), retype(b, Types::elem(work))]);
         let expr = retype(Expr { kind, ty: Types::elem(work), span }, Types::elem(wide));
         Operand::Value { expr, ty: Types::elem(common) }
@@ -283,7 +296,7 @@ impl<'a> Checker<'_, 'a> {
                 }
                 // `common` was chosen so that this conversion is legal.
                 let _ = ty;
-                self.to_elem(expr, common, span)
+                self.with_elem(expr, common, span)
             }
             constant => self.coerce(constant, span, Types::elem(common)),
         }
@@ -307,6 +320,7 @@ impl<'a> Checker<'_, 'a> {
         Operand::Error
     }
 
+    #[allow(clippy::too_many_arguments)]
     fn arithmetic(
         &mut self,
         op: BinaryOp,
@@ -360,8 +374,8 @@ impl<'a> Checker<'_, 'a> {
         if a.ty == Types::ERROR || b.ty == Types::ERROR {
             return Operand::Error;
         }
-        let a = self.to_elem(a, wide, sides[0]);
-        let b = self.to_elem(b, wide, sides[1]);
+        let a = self.with_elem(a, wide, sides[0]);
+        let b = self.with_elem(b, wide, sides[1]);
         let prim = match op {
             BinaryOp::Add => Op::Add,
             BinaryOp::Sub => Op::Sub,
@@ -493,12 +507,18 @@ impl<'a> Checker<'_, 'a> {
         let result = match (op, family(ea), family(eb)) {
             (BinaryOp::Add | BinaryOp::Sub, Some(Duration), Some(Duration)) => Some(time(long(ea) || long(eb))),
             (BinaryOp::Add | BinaryOp::Sub, Some(TimeOfDay | DateTime), Some(Duration)) => ea,
-            (BinaryOp::Sub, Some(x @ (Date | TimeOfDay | DateTime)), Some(y)) if x == y => Some(time(long(ea) || long(eb))),
-            (BinaryOp::Mul, Some(Duration), _) if number(eb) => return self.scale(Op::MulTime, a, b, ea, eb, sides, span),
-            (BinaryOp::Mul, _, Some(Duration)) if number(ea) => {
-                return self.scale(Op::MulTime, b, a, eb, ea, [sides[1], sides[0]], span);
+            (BinaryOp::Sub, Some(x @ (Date | TimeOfDay | DateTime)), Some(y)) if x == y => {
+                Some(time(long(ea) || long(eb)))
             }
-            (BinaryOp::Div, Some(Duration), _) if number(eb) => return self.scale(Op::DivTime, a, b, ea, eb, sides, span),
+            (BinaryOp::Mul, Some(Duration), _) if number(eb) => {
+                return self.scale(Op::TimeMul, a, b, ea, eb, sides, span);
+            }
+            (BinaryOp::Mul, _, Some(Duration)) if number(ea) => {
+                return self.scale(Op::TimeMul, b, a, eb, ea, [sides[1], sides[0]], span);
+            }
+            (BinaryOp::Div, Some(Duration), _) if number(eb) => {
+                return self.scale(Op::TimeDiv, a, b, ea, eb, sides, span);
+            }
             _ => None,
         };
         let Some(result) = result else {
@@ -543,10 +563,10 @@ impl<'a> Checker<'_, 'a> {
             Some(Elem::Ulint) => Elem::Ulint,
             _ => Elem::Lint,
         };
-        if op == Op::DivTime && by != Elem::Lreal && matches!(factor.kind, ExprKind::Const(0)) {
+        if op == Op::TimeDiv && by != Elem::Lreal && matches!(factor.kind, ExprKind::Const(0)) {
             return self.zero_divisor(sides[1]);
         }
-        let factor = self.to_elem(factor, by, sides[1]);
+        let factor = self.with_elem(factor, by, sides[1]);
         Operand::value(ExprKind::Op(op, by, vec![time, factor]), ty, span)
     }
 
@@ -629,12 +649,18 @@ impl<'a> Checker<'_, 'a> {
         }
         // Profile codesys may have computed one side wider: compare there.
         let wide = match (self.elem_of(a.ty), self.elem_of(b.ty)) {
-            (Some(x), Some(y)) if x != y => if x.bits() >= y.bits() { x } else { y },
+            (Some(x), Some(y)) if x != y => {
+                if x.bits() >= y.bits() {
+                    x
+                } else {
+                    y
+                }
+            }
             (Some(x), _) => x,
             _ => common,
         };
-        a = self.to_elem(a, wide, sides[0]);
-        b = self.to_elem(b, wide, sides[1]);
+        a = self.with_elem(a, wide, sides[0]);
+        b = self.with_elem(b, wide, sides[1]);
         if equality && wide.is_real() {
             let zero = |e: &Expr, untyped: bool| untyped && matches!(e.kind, ExprKind::Const(0));
             if !zero(&a, untyped_a) && !zero(&b, untyped_b) {
@@ -702,7 +728,13 @@ impl<'a> Checker<'_, 'a> {
         let Some((ea, _)) = self.arithmetic_elems(BinaryOp::Power, &a, &b, sides, span) else { return Operand::Error };
         let base = match (ea, want.and_then(|w| self.elem_of(w))) {
             (Some(e), _) if e.is_real() => e,
-            (Some(e), _) if e.is_integer() => if e.bits() <= 16 { Elem::Real } else { Elem::Lreal },
+            (Some(e), _) if e.is_integer() => {
+                if e.bits() <= 16 {
+                    Elem::Real
+                } else {
+                    Elem::Lreal
+                }
+            }
             (None, Some(Elem::Real)) => Elem::Real,
             (None, _) => Elem::Lreal,
             (Some(e), _) => return self.no_operator("**", Types::elem(e), sides[0], "it needs numbers"),
@@ -715,8 +747,8 @@ impl<'a> Checker<'_, 'a> {
         if a.ty == Types::ERROR || b.ty == Types::ERROR {
             return Operand::Error;
         }
-        let a = self.to_elem(a, base, sides[0]);
-        let b = self.to_elem(b, base, sides[1]);
+        let a = self.with_elem(a, base, sides[0]);
+        let b = self.with_elem(b, base, sides[1]);
         Operand::value(ExprKind::Op(Op::Power, base, vec![a, b]), Types::elem(base), span)
     }
 }

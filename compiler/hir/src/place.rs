@@ -137,15 +137,19 @@ impl<'a> Checker<'_, 'a> {
                     _ => "a POU",
                 };
                 self.report(
-                    Diagnostic::new(codes::NOT_A_VARIABLE, name.span, format!("`{}` is {what}, no variable", name.text))
-                        .help(match found {
-                            Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::FunctionBlock => {
-                                format!("declare an instance of it: `inst : {};`", name.text)
-                            }
-                            Found::Pou(_) => format!("call it: `{}(...)`", name.text),
-                            Found::Action(_) => format!("call it: `{}();`", name.text),
-                            _ => "a variable is needed here".into(),
-                        }),
+                    Diagnostic::new(
+                        codes::NOT_A_VARIABLE,
+                        name.span,
+                        format!("`{}` is {what}, no variable", name.text),
+                    )
+                    .help(match found {
+                        Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::FunctionBlock => {
+                            format!("declare an instance of it: `inst : {};`", name.text)
+                        }
+                        Found::Pou(_) => format!("call it: `{}(...)`", name.text),
+                        Found::Action(_) => format!("call it: `{}();`", name.text),
+                        _ => "a variable is needed here".into(),
+                    }),
                 );
                 None
             }
@@ -236,7 +240,8 @@ impl<'a> Checker<'_, 'a> {
             Type::Ref { .. } => {
                 let text = "a reference has no components";
                 self.report(
-                    Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, text).help(format!("follow it: `^.{}`", name.text)),
+                    Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, text)
+                        .help(format!("follow it: `^.{}`", name.text)),
                 );
                 None
             }
@@ -332,10 +337,11 @@ impl<'a> Checker<'_, 'a> {
                 if elem == Elem::Ulint {
                     let limit = Expr { kind: ExprKind::Const(i64::MAX as u64), ty: Types::elem(elem), span };
                     let args = vec![retype(expr, Types::elem(elem)), limit];
-                    let low = Expr { kind: ExprKind::Op(plcc_stdlib::ops::Op::Min, elem, args), ty: Types::elem(elem), span };
-                    return Some(self.to_elem(low, Elem::Lint, span));
+                    let low =
+                        Expr { kind: ExprKind::Op(plcc_stdlib::ops::Op::Min, elem, args), ty: Types::elem(elem), span };
+                    return Some(self.with_elem(low, Elem::Lint, span));
                 }
-                Some(self.to_elem(expr, Elem::Lint, span))
+                Some(self.with_elem(expr, Elem::Lint, span))
             }
             Some(elem) if elem.is_bits() => {
                 if !self.codesys(span) {
@@ -348,8 +354,8 @@ impl<'a> Checker<'_, 'a> {
                     );
                 }
                 let number = crate::rules::as_number(elem);
-                let expr = self.to_elem(expr, number, span);
-                Some(self.to_elem(expr, Elem::Lint, span))
+                let expr = self.with_elem(expr, number, span);
+                Some(self.with_elem(expr, Elem::Lint, span))
             }
             _ if ty == Types::ERROR => None,
             _ => {
@@ -542,8 +548,8 @@ impl<'a> Checker<'_, 'a> {
                 _ => {}
             }
         }
-        let v = &self.cx.defs.vars[var];
-        let (name, span) = (v.name.clone(), v.span);
+        let v = self.cx.defs.vars[var].clone();
+        let (name, span) = (v.name, v.span);
         if v.constant {
             self.report(
                 Diagnostic::new(codes::NOT_WRITABLE, place.span, format!("`{name}` is a CONSTANT"))
@@ -561,9 +567,13 @@ impl<'a> Checker<'_, 'a> {
         }
         if v.address.is_some_and(|a| a.area == Area::Input) {
             self.report(
-                Diagnostic::new(codes::INPUT_WRITTEN, place.span, format!("`{name}` lies in %I, the next scan overwrites it"))
-                    .also(span, "located here")
-                    .help("the process image sets %I before each scan"),
+                Diagnostic::new(
+                    codes::INPUT_WRITTEN,
+                    place.span,
+                    format!("`{name}` lies in %I, the next scan overwrites it"),
+                )
+                .also(span, "located here")
+                .help("the process image sets %I before each scan"),
             );
         }
         true

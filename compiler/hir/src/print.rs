@@ -178,8 +178,7 @@ impl Printer<'_> {
             }
             StmtKind::For { var, from, to, by, body } => {
                 let by = by.as_ref().map(|b| format!(" BY {}", self.expr(b))).unwrap_or_default();
-                let line =
-                    format!("FOR {} := {} TO {}{by} DO", self.place(var), self.expr(from), self.expr(to));
+                let line = format!("FOR {} := {} TO {}{by} DO", self.place(var), self.expr(from), self.expr(to));
                 self.line(&line);
                 self.nested(body);
                 self.line("END_FOR");
@@ -243,7 +242,7 @@ impl Printer<'_> {
             }
         }
         match crate::cx::elem_of(self.defs, ty) {
-            Some(elem) => plcc_stdlib::value::format_scalar(elem, raw),
+            Some(elem) => plcc_stdlib::value::Value::Scalar { elem, raw }.to_string(),
             None => format!("{}#{raw}", self.ty(ty)),
         }
     }

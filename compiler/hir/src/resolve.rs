@@ -269,13 +269,8 @@ impl<'a> Cx<'a> {
                 }
             },
         };
-        let id = self.defs.enums.push(EnumDef {
-            name: name.into(),
-            base,
-            values: Vec::new(),
-            default: 0,
-            span: te.span,
-        });
+        let id =
+            self.defs.enums.push(EnumDef { name: name.into(), base, values: Vec::new(), default: 0, span: te.span });
         let (low, high) = base.range().unwrap_or((0, 0));
         let mut next: i128 = 0;
         for value in values {

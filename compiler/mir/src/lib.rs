@@ -1,3 +1,12 @@
 //! HIR to MIR, memory layout, verifier, printer, and the reference interpreter.
 
+pub mod build;
+pub mod dominators;
+pub mod interp;
 pub mod ir;
+pub mod layout;
+pub mod lower;
+mod operands;
+pub mod print;
+pub mod verify;
+pub mod visit;

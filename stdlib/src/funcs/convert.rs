@@ -21,8 +21,14 @@ pub(super) fn rows() -> Vec<StdFn> {
         for to_name in spellings(to) {
             let any = [("IN", Type::Var)];
             let doc = "IN as this type; see semantics T6.";
-            let general =
-                row(&format!("TO_{to_name}"), "Ed. 3 table 22", Generic::Elementary, &any, Meaning::Convert(None, to), doc);
+            let general = row(
+                &format!("TO_{to_name}"),
+                "Ed. 3 table 22",
+                Generic::Elementary,
+                &any,
+                Meaning::Convert(None, to),
+                doc,
+            );
             rows.push(general.gives(Type::Fixed(to)));
             for from in ALL {
                 if !crate::convert::exists(from, to) {
@@ -43,7 +49,10 @@ pub(super) fn rows() -> Vec<StdFn> {
             rows.push(named.gives(Type::Fixed(to)));
             for from in [Elem::Real, Elem::Lreal] {
                 let name = format!("{}_TRUNC_{}", from.name(), to.name());
-                rows.push(row(&name, clause, Generic::Real, &[("IN", Type::Fixed(from))], meaning, doc).gives(Type::Fixed(to)));
+                rows.push(
+                    row(&name, clause, Generic::Real, &[("IN", Type::Fixed(from))], meaning, doc)
+                        .gives(Type::Fixed(to)),
+                );
             }
         }
     }

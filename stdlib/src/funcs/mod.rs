@@ -175,7 +175,14 @@ impl StdFn {
 }
 
 /// A row of one type variable: `F(IN) : same type`.
-fn row(name: &str, clause: &'static str, generic: Generic, params: &[(&'static str, Type)], meaning: Meaning, doc: &'static str) -> StdFn {
+fn row(
+    name: &str,
+    clause: &'static str,
+    generic: Generic,
+    params: &[(&'static str, Type)],
+    meaning: Meaning,
+    doc: &'static str,
+) -> StdFn {
     StdFn {
         name: name.into(),
         clause,
@@ -231,9 +238,20 @@ pub fn find(name: &str) -> Option<&'static StdFn> {
     table().get(name)
 }
 
+/// The row that rounds a real inside its own type (not callable by name: `TRUNC` and its kind convert to integers).
+pub fn rounding(op: PrimOp) -> Option<&'static StdFn> {
+    table().get(match op {
+        PrimOp::FTrunc => "$TRUNC",
+        PrimOp::FNearest => "$NEAREST",
+        PrimOp::FCeil => "$CEIL",
+        PrimOp::FFloor => "$FLOOR",
+        _ => return None,
+    })
+}
+
 /// Every name, typed forms included, in no order.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    table().keys().map(String::as_str)
+    table().keys().map(String::as_str).filter(|n| !n.starts_with('$'))
 }
 
 #[cfg(test)]
@@ -244,7 +262,10 @@ mod tests {
     fn names_and_parameters() {
         let limit = find("LIMIT").unwrap();
         assert_eq!(limit.param_index("mx"), Some(2));
-        assert_eq!(limit.signature(), "LIMIT(MN : ANY_ELEMENTARY, IN : ANY_ELEMENTARY, MX : ANY_ELEMENTARY) : ANY_ELEMENTARY");
+        assert_eq!(
+            limit.signature(),
+            "LIMIT(MN : ANY_ELEMENTARY, IN : ANY_ELEMENTARY, MX : ANY_ELEMENTARY) : ANY_ELEMENTARY"
+        );
         let add = find("ADD").unwrap();
         assert_eq!(add.param_index("IN2"), Some(1));
         assert_eq!(add.param_index("IN0"), None);

@@ -19,7 +19,7 @@ macro_rules! op {
 
 macro_rules! math {
     ($single:ident, $double:ident) => {
-        Meaning::Formula(|t, args, e| math(t, args, e, &rt::$single, &rt::$double))
+        Meaning::Formula(|t, args, e| math(t, args, e, &rt::math::$single, &rt::math::$double))
     };
 }
 
@@ -53,34 +53,90 @@ pub(super) fn rows() -> Vec<StdFn> {
     let mut rows = vec![
         row("ABS", unary, Num, &one, op!(Abs), "The absolute value; that of the smallest integer is itself."),
         row("SQRT", unary, Real, &one, op!(Sqrt), "The square root; NaN for negative numbers."),
-        row("LN", unary, Real, &one, math!(LOGF, LOG), "The natural logarithm."),
-        row("LOG", unary, Real, &one, math!(LOG10F, LOG10), "The logarithm to base 10."),
-        row("EXP", unary, Real, &one, math!(EXPF, EXP), "e to the power of IN."),
-        row("SIN", unary, Real, &one, math!(SINF, SIN), "The sine of an angle in radians."),
-        row("COS", unary, Real, &one, math!(COSF, COS), "The cosine of an angle in radians."),
-        row("TAN", unary, Real, &one, math!(TANF, TAN), "The tangent of an angle in radians."),
-        row("ASIN", unary, Real, &one, math!(ASINF, ASIN), "The arc sine, -pi/2 to pi/2."),
-        row("ACOS", unary, Real, &one, math!(ACOSF, ACOS), "The arc cosine, 0 to pi."),
-        row("ATAN", unary, Real, &one, math!(ATANF, ATAN), "The arc tangent, -pi/2 to pi/2."),
-        row("ATAN2", "Ed. 3 table 28", Real, &[("Y", Var), ("X", Var)], math!(ATAN2F, ATAN2), "The angle of the point (X, Y), -pi to pi."),
-        row("TRUNC", "Ed. 2 table 22", Real, &one, Meaning::Integral(PrimOp::FTrunc), "The integral part, toward zero.").gives(IntegerOfPlace),
-        row("ROUND", "common extension", Real, &one, Meaning::Integral(PrimOp::FNearest), "The nearest integer, ties to even.").gives(IntegerOfPlace),
-        row("CEIL", "common extension", Real, &one, Meaning::Integral(PrimOp::FCeil), "The smallest integer not below IN.").gives(IntegerOfPlace),
-        row("FLOOR", "common extension", Real, &one, Meaning::Integral(PrimOp::FFloor), "The greatest integer not above IN.").gives(IntegerOfPlace),
-        row("ADD", arithmetic, Magnitude, &[], Meaning::Operator(Operator::Add), "The sum, left to right.").extensible(1, 2),
-        row("MUL", arithmetic, Magnitude, &[], Meaning::Operator(Operator::Mul), "The product, left to right.").extensible(1, 2),
+        row("LN", unary, Real, &one, math!(LN_F32, LN_F64), "The natural logarithm."),
+        row("LOG", unary, Real, &one, math!(LOG_F32, LOG_F64), "The logarithm to base 10."),
+        row("EXP", unary, Real, &one, math!(EXP_F32, EXP_F64), "e to the power of IN."),
+        row("SIN", unary, Real, &one, math!(SIN_F32, SIN_F64), "The sine of an angle in radians."),
+        row("COS", unary, Real, &one, math!(COS_F32, COS_F64), "The cosine of an angle in radians."),
+        row("TAN", unary, Real, &one, math!(TAN_F32, TAN_F64), "The tangent of an angle in radians."),
+        row("ASIN", unary, Real, &one, math!(ASIN_F32, ASIN_F64), "The arc sine, -pi/2 to pi/2."),
+        row("ACOS", unary, Real, &one, math!(ACOS_F32, ACOS_F64), "The arc cosine, 0 to pi."),
+        row("ATAN", unary, Real, &one, math!(ATAN_F32, ATAN_F64), "The arc tangent, -pi/2 to pi/2."),
+        row(
+            "ATAN2",
+            "Ed. 3 table 28",
+            Real,
+            &[("Y", Var), ("X", Var)],
+            math!(ATAN2_F32, ATAN2_F64),
+            "The angle of the point (X, Y), -pi to pi.",
+        ),
+        row(
+            "TRUNC",
+            "Ed. 2 table 22",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FTrunc),
+            "The integral part, toward zero.",
+        )
+        .gives(IntegerOfPlace),
+        row(
+            "ROUND",
+            "common extension",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FNearest),
+            "The nearest integer, ties to even.",
+        )
+        .gives(IntegerOfPlace),
+        row(
+            "CEIL",
+            "common extension",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FCeil),
+            "The smallest integer not below IN.",
+        )
+        .gives(IntegerOfPlace),
+        row(
+            "FLOOR",
+            "common extension",
+            Real,
+            &one,
+            Meaning::Integral(PrimOp::FFloor),
+            "The greatest integer not above IN.",
+        )
+        .gives(IntegerOfPlace),
+        row("ADD", arithmetic, Magnitude, &[], Meaning::Operator(Operator::Add), "The sum, left to right.")
+            .extensible(1, 2),
+        row("MUL", arithmetic, Magnitude, &[], Meaning::Operator(Operator::Mul), "The product, left to right.")
+            .extensible(1, 2),
         row("SUB", arithmetic, Magnitude, &two, Meaning::Operator(Operator::Sub), "IN1 - IN2."),
         row("DIV", arithmetic, Magnitude, &two, Meaning::Operator(Operator::Div), "IN1 / IN2; integers toward zero."),
-        row("MOD", arithmetic, Int, &two, Meaning::Operator(Operator::Mod), "The remainder of IN1 / IN2, with the sign of IN1."),
+        row(
+            "MOD",
+            arithmetic,
+            Int,
+            &two,
+            Meaning::Operator(Operator::Mod),
+            "The remainder of IN1 / IN2, with the sign of IN1.",
+        ),
         row("EXPT", arithmetic, Num, &two, Meaning::Operator(Operator::Power), "IN1 to the power of IN2."),
         row("MOVE", arithmetic, Any, &one, Meaning::Move, "IN itself."),
         row("SHL", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Shl), "IN shifted left by N bits, filled with 0."),
-        row("SHR", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Shr), "IN shifted right by N bits, filled with 0."),
+        row(
+            "SHR",
+            "Ed. 2 table 25",
+            Bit,
+            &shift,
+            Meaning::Shift(Op::Shr),
+            "IN shifted right by N bits, filled with 0.",
+        ),
         row("ROL", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Rol), "IN rotated left by N bits."),
         row("ROR", "Ed. 2 table 25", Bit, &shift, Meaning::Shift(Op::Ror), "IN rotated right by N bits."),
         row("AND", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::And), "Bitwise AND.").extensible(1, 2),
         row("OR", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::Or), "Bitwise OR.").extensible(1, 2),
-        row("XOR", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::Xor), "Bitwise exclusive OR.").extensible(1, 2),
+        row("XOR", "Ed. 2 table 26", Bit, &[], Meaning::Operator(Operator::Xor), "Bitwise exclusive OR.")
+            .extensible(1, 2),
         row("NOT", "Ed. 2 table 26", Bit, &one, Meaning::Operator(Operator::Not), "Bitwise complement."),
     ];
     for (name, meaning, doc) in [
@@ -92,6 +148,14 @@ pub(super) fn rows() -> Vec<StdFn> {
     ] {
         let row = row(name, "Ed. 2 table 28", Elementary, &[], meaning, doc);
         rows.push(row.extensible(1, 2).gives(Fixed(Elem::Bool)));
+    }
+    for (name, formula) in [
+        ("$TRUNC", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FTrunc, t.repr(), a)))),
+        ("$NEAREST", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FNearest, t.repr(), a)))),
+        ("$CEIL", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FCeil, t.repr(), a)))),
+        ("$FLOOR", Meaning::Formula(|t, a, e| Some(e.prim(PrimOp::FFloor, t.repr(), a)))),
+    ] {
+        rows.push(row(name, "", Real, &one, formula, "Rounds to an integral real."));
     }
     let ne = row("NE", "Ed. 2 table 28", Elementary, &two, compare!(Ne), "TRUE if the arguments differ.");
     rows.push(ne.gives(Fixed(Elem::Bool)));

@@ -38,8 +38,5 @@ pub(super) fn rows() -> Vec<StdFn> {
             }
         }
     }
-    names
-        .into_iter()
-        .map(|name| row(&name, "", Generic::Any, &[], Meaning::NotYet, "Not implemented yet."))
-        .collect()
+    names.into_iter().map(|name| row(&name, "", Generic::Any, &[], Meaning::NotYet, "Not implemented yet.")).collect()
 }

@@ -37,8 +37,15 @@ pub(super) fn rows() -> Vec<StdFn> {
             Meaning::Formula(|t, args, e| Some(e.prim(PrimOp::Select, t.repr(), &[args[0], args[2], args[1]]))),
             "IN0 if G is FALSE, IN1 if it is TRUE.",
         ),
-        row("MAX", clause, Elementary, &[], Meaning::Formula(|t, a, e| fold(Op::Max, t, a, e)), "The greatest argument.")
-            .extensible(1, 2),
+        row(
+            "MAX",
+            clause,
+            Elementary,
+            &[],
+            Meaning::Formula(|t, a, e| fold(Op::Max, t, a, e)),
+            "The greatest argument.",
+        )
+        .extensible(1, 2),
         row("MIN", clause, Elementary, &[], Meaning::Formula(|t, a, e| fold(Op::Min, t, a, e)), "The least argument.")
             .extensible(1, 2),
         row(
@@ -52,7 +59,14 @@ pub(super) fn rows() -> Vec<StdFn> {
             }),
             "IN, but at least MN and at most MX.",
         ),
-        row("MUX", clause, Any, &[("K", Integer)], Meaning::Formula(mux), "Input number K, from 0; the last one if K is outside.")
-            .extensible(0, 2),
+        row(
+            "MUX",
+            clause,
+            Any,
+            &[("K", Integer)],
+            Meaning::Formula(mux),
+            "Input number K, from 0; the last one if K is outside.",
+        )
+        .extensible(0, 2),
     ]
 }

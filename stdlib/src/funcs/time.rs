@@ -31,7 +31,13 @@ pub(super) fn rows() -> Vec<StdFn> {
             fixed(&name("SUB_@DATE_@DATE"), &[("IN1", d), ("IN2", d)], t, sub, "The time from IN2 to IN1."),
             fixed(&name("SUB_@TOD_@TOD"), &[("IN1", tod), ("IN2", tod)], t, sub, "The time from IN2 to IN1."),
             fixed(&name("SUB_@DT_@DT"), &[("IN1", dt), ("IN2", dt)], t, sub, "The time from IN2 to IN1."),
-            fixed(&name("CONCAT_@DATE_@TOD"), &[("IN1", d), ("IN2", tod)], dt, sum, "A date and a time of day together."),
+            fixed(
+                &name("CONCAT_@DATE_@TOD"),
+                &[("IN1", d), ("IN2", tod)],
+                dt,
+                sum,
+                "A date and a time of day together.",
+            ),
         ]);
         let scaled = |name: String, op, doc| {
             let params = [("IN1", Type::Fixed(t)), ("IN2", Type::Var)];

@@ -28,6 +28,7 @@ pub fn eval(op: PrimOp, repr: Repr, args: &[u64]) -> u64 {
     }
 }
 
+#[inline]
 fn eval_int(op: PrimOp, repr: Repr, a: u64, b: u64) -> u64 {
     use PrimOp::*;
     let (sa, sb) = (repr.sign_extend(a), repr.sign_extend(b));
@@ -89,6 +90,7 @@ fn rotate_left(a: u64, count: u32, repr: Repr) -> u64 {
 /// The operations that read the same for both real types.
 macro_rules! eval_real {
     ($name:ident, $float:ty, $bits:ty) => {
+        #[inline]
         fn $name(op: PrimOp, a: $float, b: $float) -> u64 {
             use PrimOp::*;
             let real = |x: $float| u64::from(x.to_bits());

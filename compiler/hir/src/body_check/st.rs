@@ -147,8 +147,12 @@ impl<'a> St<'_, 'a> {
             Type::Instance(pou) => {
                 let name = self.c.cx.defs.pous[*pou].name.clone();
                 self.c.report(
-                    Diagnostic::new(codes::NOT_WRITABLE, place.span, format!("an instance of `{name}` cannot be assigned"))
-                        .help("assign its inputs, or pass the instance as VAR_IN_OUT"),
+                    Diagnostic::new(
+                        codes::NOT_WRITABLE,
+                        place.span,
+                        format!("an instance of `{name}` cannot be assigned"),
+                    )
+                    .help("assign its inputs, or pass the instance as VAR_IN_OUT"),
                 );
                 false
             }
@@ -288,8 +292,11 @@ impl<'a> St<'_, 'a> {
             }
         }
         let otherwise = otherwise.map(|b| self.list(b)).unwrap_or_default();
-        (value.ty != Types::ERROR && elem.is_some())
-            .then_some(StmtKind::Case { selector: value, arms: checked, otherwise })
+        (value.ty != Types::ERROR && elem.is_some()).then_some(StmtKind::Case {
+            selector: value,
+            arms: checked,
+            otherwise,
+        })
     }
 
     /// A label as a number of the selector's type.
@@ -350,8 +357,12 @@ impl<'a> St<'_, 'a> {
             if int.is_none() && place.ty != Types::ERROR {
                 let ty = self.c.cx.type_name(place.ty);
                 self.c.report(
-                    Diagnostic::new(codes::WRONG_OPERAND, var.span, format!("FOR counts with an integer, this is {ty}"))
-                        .help("declare the control variable as INT or DINT"),
+                    Diagnostic::new(
+                        codes::WRONG_OPERAND,
+                        var.span,
+                        format!("FOR counts with an integer, this is {ty}"),
+                    )
+                    .help("declare the control variable as INT or DINT"),
                 );
             }
             self.c.check_writable(place);
@@ -453,14 +464,26 @@ impl<'a> St<'_, 'a> {
                 let zero = Expr { kind: ExprKind::Const(0), ty, span };
                 let rising = compare(Op::Ge, vec![read(step_temp), zero.clone()]);
                 let falling = compare(Op::Lt, vec![read(step_temp), zero]);
-                let both = |a: Expr, b: Expr| Expr { kind: ExprKind::AndThen(Box::new(a), Box::new(b)), ty: bool_ty, span };
-                Expr { kind: ExprKind::OrElse(Box::new(both(rising, up)), Box::new(both(falling, down))), ty: bool_ty, span }
+                let both =
+                    |a: Expr, b: Expr| Expr { kind: ExprKind::AndThen(Box::new(a), Box::new(b)), ty: bool_ty, span };
+                Expr {
+                    kind: ExprKind::OrElse(Box::new(both(rising, up)), Box::new(both(falling, down))),
+                    ty: bool_ty,
+                    span,
+                }
             }
         };
         let mut body = body;
         body.push(stmt(StmtKind::Label(next)));
-        let sum = expr(Op::Add, vec![retype(current, Types::elem(number)), retype(read(step_temp), Types::elem(number))], ty);
-        let sum = Expr { kind: match sum.kind { ExprKind::Op(op, _, args) => ExprKind::Op(op, number, args), k => k }, ..sum };
+        let sum =
+            expr(Op::Add, vec![retype(current, Types::elem(number)), retype(read(step_temp), Types::elem(number))], ty);
+        let sum = Expr {
+            kind: match sum.kind {
+                ExprKind::Op(op, _, args) => ExprKind::Op(op, number, args),
+                k => k,
+            },
+            ..sum
+        };
         body.push(stmt(StmtKind::Assign { target: var.clone(), value: retype(sum, var.ty) }));
         out.push(stmt(StmtKind::While(cond, body)));
     }
@@ -504,8 +527,12 @@ impl<'a> St<'_, 'a> {
             let label = Label { id, declared: Some(name.span), used: None };
             if let Some(first) = self.labels.insert(fold(&name.text), label) {
                 self.c.report(
-                    Diagnostic::new(codes::DUPLICATE_NAME, name.span, format!("label `{}` is declared twice", name.text))
-                        .also(first.declared.unwrap_or(name.span), "first declared here"),
+                    Diagnostic::new(
+                        codes::DUPLICATE_NAME,
+                        name.span,
+                        format!("label `{}` is declared twice", name.text),
+                    )
+                    .also(first.declared.unwrap_or(name.span), "first declared here"),
                 );
             }
         }
@@ -532,12 +559,9 @@ impl<'a> St<'_, 'a> {
     }
 
     fn check_labels(&mut self) {
-        let unused: Vec<Span> =
-            self.labels.values().filter(|l| l.used.is_none()).filter_map(|l| l.declared).collect();
+        let unused: Vec<Span> = self.labels.values().filter(|l| l.used.is_none()).filter_map(|l| l.declared).collect();
         for span in unused {
-            self.c.report(
-                Diagnostic::new(codes::UNUSED_LABEL, span, "no jump leads to this label").help("remove it"),
-            );
+            self.c.report(Diagnostic::new(codes::UNUSED_LABEL, span, "no jump leads to this label").help("remove it"));
         }
     }
 }

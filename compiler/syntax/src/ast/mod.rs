@@ -1,9 +1,13 @@
 //! The syntax tree of the text notations. It says what was written and where; it knows no types and resolves no names.
 
+// Nodes are built once and then only matched: patterns without boxes are worth more than their size.
+#![allow(clippy::large_enum_variant)]
+
 pub mod config;
 pub mod decl;
 pub mod expr;
 pub mod il;
+pub mod print;
 pub mod sfc;
 pub mod st;
 

@@ -1,0 +1,501 @@
+//! One function of the program to CLIF: blocks one to one, checks as branches to cold blocks.
+
+use crate::place::memory;
+use crate::prim::{self, clif_type};
+use crate::shape::{Shape, signature};
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{
+    self, AbiParam, BlockArg, ExtFuncData, ExternalName, FuncRef, InstBuilder, Signature, SourceLoc, UserExternalName,
+    UserFuncName, Value, types,
+};
+use cranelift_codegen::isa::{CallConv, TargetFrontendConfig};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch};
+use index_vec::IndexVec;
+use plcc_mir::dominators::Dominators;
+use plcc_mir::ir::{Block, BlockId, Cond, Func, FuncId, Inst, Place, Program, SourceId, Target, Term, ValueId};
+use plcc_stdlib::fault::Fault;
+use plcc_stdlib::prim::Repr;
+use plcc_stdlib::region::{DEADLINE_FLAG, FAULT_CODE, FAULT_INSTANCE, FAULT_OPERANDS, FAULT_SOURCE};
+use plcc_stdlib::rt::RtFn;
+use rustc_hash::FxHashMap;
+
+/// Up to so many labels a chain of comparisons beats a jump table.
+const CHAIN_LABELS: usize = 4;
+
+/// What all functions of a program share while they are translated.
+pub struct Env<'a> {
+    /// The program.
+    pub program: &'a Program,
+    /// Calling convention and pointer width.
+    pub config: TargetFrontendConfig,
+    /// Hidden parameters and results.
+    pub shapes: IndexVec<FuncId, Shape>,
+    /// The number of each function in the module.
+    pub ids: IndexVec<FuncId, cranelift_module::FuncId>,
+    /// Number and signature of each body of the standard library that is called, by symbol.
+    pub rt: FxHashMap<&'static str, (cranelift_module::FuncId, Signature)>,
+}
+
+impl Env<'_> {
+    /// The signature of a function of the program.
+    pub fn signature(&self, id: FuncId) -> Signature {
+        signature(&self.program.funcs[id], self.shapes[id], self.config.default_call_conv)
+    }
+}
+
+/// Translates a function.
+pub fn translate(env: &Env, id: FuncId, context: &mut FunctionBuilderContext) -> ir::Function {
+    let name = UserFuncName::user(0, env.ids[id].as_u32());
+    let mut out = ir::Function::with_name_signature(name, env.signature(id));
+    let func = &env.program.funcs[id];
+    let tree = Dominators::new(func);
+    let b = FunctionBuilder::new(&mut out, context);
+    let mut translator = Translator::new(env, func, env.shapes[id], b);
+    translator.entry(!tree.preds[BlockId::from_usize(0)].is_empty(), &tree.order);
+    for block in &tree.order {
+        translator.block(*block);
+    }
+    translator.finish();
+    out
+}
+
+/// A call or data reference to another function of the module.
+pub fn import(func: &mut ir::Function, id: cranelift_module::FuncId, signature: Signature, colocated: bool) -> FuncRef {
+    let signature = func.import_signature(signature);
+    let name = func.declare_imported_user_function(UserExternalName { namespace: 0, index: id.as_u32() });
+    func.import_function(ExtFuncData { name: ExternalName::user(name), signature, colocated, patchable: false })
+}
+
+/// The walk over one function.
+pub struct Translator<'a, 'f> {
+    pub(crate) env: &'a Env<'a>,
+    pub(crate) func: &'a Func,
+    pub(crate) b: FunctionBuilder<'f>,
+    pub(crate) region: Value,
+    pub(crate) instance: Option<Value>,
+    pub(crate) frame: Option<Value>,
+    shape: Shape,
+    values: IndexVec<ValueId, Option<Value>>,
+    blocks: IndexVec<BlockId, Option<ir::Block>>,
+    callees: FxHashMap<FuncId, FuncRef>,
+    rt_callees: FxHashMap<&'static str, FuncRef>,
+    /// Writes the fault record and leaves; parameters: number, source, three operands.
+    fault: Option<ir::Block>,
+    /// Leaves with the status of a callee.
+    leave: Option<ir::Block>,
+}
+
+impl<'a, 'f> Translator<'a, 'f> {
+    fn new(env: &'a Env<'a>, func: &'a Func, shape: Shape, mut b: FunctionBuilder<'f>) -> Self {
+        let start = b.create_block();
+        b.append_block_params_for_function_params(start);
+        b.switch_to_block(start);
+        let mut hidden = b.block_params(start).iter().copied();
+        let mut next = |there: bool| if there { hidden.next() } else { None };
+        let Some(region) = next(true) else { plcc_diag::bug!("a signature without the region") };
+        let (instance, frame) = (next(shape.instance), next(shape.frame));
+        Self {
+            env,
+            func,
+            region,
+            instance,
+            frame,
+            shape,
+            values: IndexVec::from_vec(vec![None; func.values.len()]),
+            blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
+            callees: FxHashMap::default(),
+            rt_callees: FxHashMap::default(),
+            fault: None,
+            leave: None,
+            b,
+        }
+    }
+
+    /// Makes the blocks. The entry block of the function is ours, so a loop back to block 0 needs a block of its own.
+    fn entry(&mut self, entry_is_target: bool, order: &[BlockId]) {
+        let Some(start) = self.b.current_block() else { return };
+        let args: Vec<Value> = {
+            let all = self.b.block_params(start);
+            all[all.len() - self.func.params.len()..].to_vec()
+        };
+        for id in order {
+            if id.index() == 0 && !entry_is_target {
+                self.blocks[*id] = Some(start);
+                for (param, value) in self.func.blocks[*id].params.iter().zip(&args) {
+                    self.values[*param] = Some(*value);
+                }
+                continue;
+            }
+            let block = self.b.create_block();
+            self.blocks[*id] = Some(block);
+            for param in &self.func.blocks[*id].params {
+                let value = self.b.append_block_param(block, clif_type(self.func.values[*param]));
+                self.values[*param] = Some(value);
+            }
+        }
+        if entry_is_target {
+            let args: Vec<BlockArg> = args.into_iter().map(BlockArg::from).collect();
+            let first = self.target_block(BlockId::from_usize(0));
+            self.b.ins().jump(first, &args);
+        }
+    }
+
+    fn finish(mut self) {
+        self.fault_block_body();
+        self.leave_block_body();
+        self.b.seal_all_blocks();
+        self.b.finalize(self.env.config);
+    }
+
+    pub(crate) fn value(&self, id: ValueId) -> Value {
+        self.values[id].unwrap_or_else(|| plcc_diag::bug!("v{} of `{}` has no value", id.index(), self.func.name))
+    }
+
+    fn target_block(&self, id: BlockId) -> ir::Block {
+        self.blocks[id].unwrap_or_else(|| plcc_diag::bug!("b{} of `{}` is not reachable", id.index(), self.func.name))
+    }
+
+    fn values(&self, ids: &[ValueId]) -> Vec<Value> {
+        ids.iter().map(|v| self.value(*v)).collect()
+    }
+
+    fn args(&self, target: &Target) -> Vec<BlockArg> {
+        target.args.iter().map(|v| self.value(*v).into()).collect()
+    }
+
+    fn block(&mut self, id: BlockId) {
+        let block: &'a Block = &self.func.blocks[id];
+        let here = self.target_block(id);
+        if self.b.current_block() != Some(here) {
+            self.b.switch_to_block(here);
+        }
+        for inst in &block.insts {
+            self.inst(inst);
+        }
+        self.b.set_srcloc(SourceLoc::default());
+        self.term(&block.term);
+    }
+
+    fn inst(&mut self, inst: &'a Inst) {
+        let loc = match inst {
+            Inst::Call { source, .. } | Inst::Check { source, .. } | Inst::Poll { source } => {
+                SourceLoc::new(source.raw())
+            }
+            _ => SourceLoc::default(),
+        };
+        self.b.set_srcloc(loc);
+        match inst {
+            Inst::Const { dst, raw } => {
+                let value = prim::constant(&mut self.b, self.func.values[*dst], *raw);
+                self.values[*dst] = Some(value);
+            }
+            Inst::Prim { dst, op, repr, args } => {
+                let args = self.values(args);
+                let value = prim::emit(&mut self.b, *op, *repr, &args);
+                self.values[*dst] = Some(value);
+            }
+            Inst::Load { dst, place, normalise } => {
+                let value = self.load(self.func.values[*dst], place, *normalise);
+                self.values[*dst] = Some(value);
+            }
+            Inst::Store { place, value } => {
+                let value = self.value(*value);
+                self.store(place, value);
+            }
+            Inst::Copy { dst, src, bytes } => self.copy(dst, src, *bytes),
+            Inst::Zero { dst, bytes } => self.zero(dst, *bytes),
+            Inst::AddressOf { dst, place } => {
+                let pointer = self.pointer(place);
+                let offset = self.b.ins().isub(pointer, self.region);
+                let value = self.b.ins().ireduce(types::I32, offset);
+                self.values[*dst] = Some(value);
+            }
+            Inst::Call { dst, callee, instance, args, status, .. } => {
+                self.call(*dst, *callee, instance.as_ref(), args, *status);
+            }
+            Inst::CallRt { dst, func, args } => self.call_rt(*dst, func, args),
+            Inst::Check { cond, fault, operands, source } => self.check(*cond, *fault, operands, *source),
+            Inst::Poll { source } => {
+                // Keeps the load where it is, whatever the code generator's level of optimisation.
+                self.b.ins().sequence_point();
+                let flag = self.b.ins().load(types::I32, memory(), self.region, DEADLINE_FLAG as i32);
+                let (failed, next) = (self.cold_block(), self.b.create_block());
+                self.b.ins().brif(flag, failed, &[], next, &[]);
+                self.leave_with_fault(failed, Fault::Deadline, *source, &[]);
+                self.b.switch_to_block(next);
+            }
+        }
+    }
+
+    fn cold_block(&mut self) -> ir::Block {
+        let block = self.b.create_block();
+        self.b.set_cold_block(block);
+        block
+    }
+
+    fn check(&mut self, cond: Cond, fault: Fault, operands: &[ValueId], source: SourceId) {
+        let (failed, next) = (self.cold_block(), self.b.create_block());
+        let mut values = Vec::new();
+        match cond {
+            Cond::True(value) => {
+                let value = self.value(value);
+                self.b.ins().brif(value, next, &[], failed, &[]);
+            }
+            Cond::Within { value, low, high } => {
+                let value = self.value(value);
+                let outside = self.outside(value, low, high);
+                self.b.ins().brif(outside, failed, &[], next, &[]);
+                self.b.switch_to_block(failed);
+                values.push(value);
+                values.push(self.b.ins().iconst(types::I64, low));
+                values.push(self.b.ins().iconst(types::I64, high));
+            }
+        }
+        values.extend(self.values(operands));
+        self.leave_with_fault(failed, fault, source, &values);
+        self.b.switch_to_block(next);
+    }
+
+    /// One unsigned comparison for both limits.
+    fn outside(&mut self, value: Value, low: i64, high: i64) -> Value {
+        if low > high {
+            return self.b.ins().iconst(types::I8, 1);
+        }
+        let above = if low == 0 { value } else { self.b.ins().iadd_imm_s(value, low.wrapping_neg()) };
+        let span = self.b.ins().iconst(types::I64, high.wrapping_sub(low));
+        self.b.ins().icmp(IntCC::UnsignedGreaterThan, above, span)
+    }
+
+    fn leave_with_fault(&mut self, block: ir::Block, fault: Fault, source: SourceId, operands: &[Value]) {
+        let tail = match self.fault {
+            Some(block) => block,
+            None => {
+                let tail = self.cold_block();
+                for ty in [types::I32, types::I32, types::I64, types::I64, types::I64] {
+                    self.b.append_block_param(tail, ty);
+                }
+                *self.fault.insert(tail)
+            }
+        };
+        if self.b.current_block() != Some(block) {
+            self.b.switch_to_block(block);
+        }
+        let mut args: Vec<BlockArg> = vec![
+            self.b.ins().iconst(types::I32, i64::from(fault.number())).into(),
+            self.b.ins().iconst(types::I32, i64::from(source.raw())).into(),
+        ];
+        for n in 0..3 {
+            let operand = operands.get(n).copied().unwrap_or_else(|| self.b.ins().iconst(types::I64, 0));
+            args.push(operand.into());
+        }
+        self.b.ins().jump(tail, &args);
+    }
+
+    fn fault_block_body(&mut self) {
+        let Some(block) = self.fault else { return };
+        self.b.set_srcloc(SourceLoc::default());
+        self.b.switch_to_block(block);
+        let params = self.b.block_params(block).to_vec();
+        let instance = match self.instance {
+            Some(instance) => {
+                let offset = self.b.ins().isub(instance, self.region);
+                self.b.ins().ireduce(types::I32, offset)
+            }
+            None => self.b.ins().iconst(types::I32, 0),
+        };
+        let region = self.region;
+        let mut write = |at: u32, value: Value| {
+            self.b.ins().store(memory(), value, region, at as i32);
+        };
+        write(FAULT_CODE, params[0]);
+        write(FAULT_SOURCE, params[1]);
+        write(FAULT_INSTANCE, instance);
+        for (n, operand) in params[2..].iter().enumerate() {
+            write(FAULT_OPERANDS + 8 * n as u32, *operand);
+        }
+        self.return_with_status(params[0]);
+    }
+
+    fn leave_block_body(&mut self) {
+        let Some(block) = self.leave else { return };
+        self.b.set_srcloc(SourceLoc::default());
+        self.b.switch_to_block(block);
+        let status = self.b.block_params(block)[0];
+        self.return_with_status(status);
+    }
+
+    fn return_with_status(&mut self, status: Value) {
+        let mut results = vec![status];
+        if let Some(repr) = self.func.result {
+            results.push(prim::constant(&mut self.b, repr, 0));
+        }
+        self.b.ins().return_(&results);
+    }
+
+    fn leave_block(&mut self) -> ir::Block {
+        match self.leave {
+            Some(block) => block,
+            None => {
+                let block = self.cold_block();
+                self.b.append_block_param(block, types::I32);
+                *self.leave.insert(block)
+            }
+        }
+    }
+
+    fn call(
+        &mut self,
+        dst: Option<ValueId>,
+        callee: FuncId,
+        instance: Option<&Place>,
+        args: &[ValueId],
+        status: Option<ValueId>,
+    ) {
+        let shape = self.env.shapes[callee];
+        let mut values = vec![self.region];
+        if let Some(place) = instance {
+            values.push(self.pointer(place));
+        }
+        if shape.frame {
+            let Some(frame) = self.frame else { plcc_diag::bug!("no frame in `{}`", self.func.name) };
+            let own = i64::from(self.func.frame_bytes);
+            values.push(if own == 0 { frame } else { self.b.ins().iadd_imm_u(frame, own) });
+        }
+        values.extend(self.values(args));
+        let reference = match self.callees.get(&callee) {
+            Some(reference) => *reference,
+            None => {
+                let reference = import(self.b.func, self.env.ids[callee], self.env.signature(callee), true);
+                self.callees.insert(callee, reference);
+                reference
+            }
+        };
+        let inst = self.b.ins().call(reference, &values);
+        let results = self.b.inst_results(inst).to_vec();
+        if let (Some(dst), Some(value)) = (dst, results.get(usize::from(shape.status))) {
+            self.values[dst] = Some(*value);
+        }
+        match status {
+            None if shape.status => {
+                let (leave, next) = (self.leave_block(), self.b.create_block());
+                self.b.ins().brif(results[0], leave, &[results[0].into()], next, &[]);
+                self.b.switch_to_block(next);
+            }
+            None => {}
+            Some(status) if shape.status => {
+                self.values[status] = Some(results[0]);
+                self.catch(results[0], shape);
+            }
+            Some(status) => self.values[status] = Some(self.b.ins().iconst(types::I32, 0)),
+        }
+    }
+
+    /// Clears the fault code that a callee left behind, unless it is the deadline.
+    fn catch(&mut self, status: Value, shape: Shape) {
+        let (caught, next) = (self.cold_block(), self.b.create_block());
+        self.b.ins().brif(status, caught, &[], next, &[]);
+        self.b.switch_to_block(caught);
+        if shape.deadline {
+            let (leave, go_on) = (self.leave_block(), self.cold_block());
+            let number = i64::from(Fault::Deadline.number());
+            let is_deadline = self.b.ins().icmp_imm_u(IntCC::Equal, status, number);
+            self.b.ins().brif(is_deadline, leave, &[status.into()], go_on, &[]);
+            self.b.switch_to_block(go_on);
+        }
+        let zero = self.b.ins().iconst(types::I32, 0);
+        self.b.ins().store(memory(), zero, self.region, FAULT_CODE as i32);
+        self.b.ins().jump(next, &[]);
+        self.b.switch_to_block(next);
+    }
+
+    fn call_rt(&mut self, dst: ValueId, func: &'static RtFn, args: &[ValueId]) {
+        let reference = match self.rt_callees.get(func.symbol) {
+            Some(reference) => *reference,
+            None => {
+                let Some((id, signature)) = self.env.rt.get(func.symbol) else {
+                    plcc_diag::bug!("`{}` was not declared", func.symbol)
+                };
+                let reference = import(self.b.func, *id, signature.clone(), false);
+                self.rt_callees.insert(func.symbol, reference);
+                reference
+            }
+        };
+        let args = self.values(args);
+        let inst = self.b.ins().call(reference, &args);
+        self.values[dst] = Some(self.b.inst_results(inst)[0]);
+    }
+
+    fn term(&mut self, term: &Term) {
+        match term {
+            Term::Jump(target) => {
+                let (block, args) = (self.target_block(target.block), self.args(target));
+                self.b.ins().jump(block, &args);
+            }
+            Term::Branch { cond, then, otherwise } => {
+                let cond = self.value(*cond);
+                let (yes, yes_args) = (self.target_block(then.block), self.args(then));
+                let (no, no_args) = (self.target_block(otherwise.block), self.args(otherwise));
+                self.b.ins().brif(cond, yes, &yes_args, no, &no_args);
+            }
+            Term::Switch { value, cases, default } => self.switch(*value, cases, default),
+            Term::Return(value) => {
+                let mut results = Vec::new();
+                if self.shape.status {
+                    results.push(self.b.ins().iconst(types::I32, 0));
+                }
+                results.extend(value.map(|v| self.value(v)));
+                self.b.ins().return_(&results);
+            }
+        }
+    }
+
+    fn switch(&mut self, value: ValueId, cases: &[(u64, Target)], default: &Target) {
+        let selector = self.value(value);
+        let (other, other_args) = (self.target_block(default.block), self.args(default));
+        if cases.len() <= CHAIN_LABELS {
+            for (label, target) in cases {
+                let label = prim::constant(&mut self.b, self.func.values[value], *label);
+                let (block, args) = (self.target_block(target.block), self.args(target));
+                let next = self.b.create_block();
+                let equal = self.b.ins().icmp(IntCC::Equal, selector, label);
+                self.b.ins().brif(equal, block, &args, next, &[]);
+                self.b.switch_to_block(next);
+            }
+            self.b.ins().jump(other, &other_args);
+            return;
+        }
+        // A jump table gives no arguments: an edge that has some gets a block.
+        let mut switch = Switch::new();
+        let mut edges = Vec::new();
+        for (label, target) in cases {
+            let block = self.edge(target, &mut edges);
+            switch.set_entry(u128::from(*label), block);
+        }
+        let otherwise = self.edge(default, &mut edges);
+        switch.emit(&mut self.b, selector, otherwise);
+        for (edge, block, args) in edges {
+            self.b.switch_to_block(edge);
+            self.b.ins().jump(block, &args);
+        }
+    }
+
+    fn edge(&mut self, target: &Target, edges: &mut Vec<(ir::Block, ir::Block, Vec<BlockArg>)>) -> ir::Block {
+        let block = self.target_block(target.block);
+        if target.args.is_empty() {
+            return block;
+        }
+        let edge = self.b.create_block();
+        edges.push((edge, block, self.args(target)));
+        edge
+    }
+}
+
+/// The signature of a body of the standard library.
+pub fn rt_signature(func: &RtFn, isa: &dyn cranelift_codegen::isa::TargetIsa, call_conv: CallConv) -> Signature {
+    let param =
+        |repr: Repr| AbiParam { extension: crate::target::c_extension(isa, repr), ..AbiParam::new(clif_type(repr)) };
+    let mut signature = Signature::new(call_conv);
+    signature.params.extend(func.params.iter().map(|r| param(*r)));
+    signature.returns.push(AbiParam::new(clif_type(func.result)));
+    signature
+}

@@ -1,0 +1,230 @@
+//! Bodies in ST and SFC: their constructs, and where they end.
+
+use super::{Block, Blocks, Phase};
+use crate::token::{Tok, Token};
+use plcc_diag::codes;
+
+impl Blocks<'_, '_> {
+    /// Classifies the body that begins here and puts its marker in front.
+    pub(super) fn start_body(&mut self) {
+        let (phase, marker) = if self.chart_here() {
+            (Phase::Sfc, Tok::BodySfc)
+        } else if self.il_here() {
+            (Phase::Il, Tok::BodyIl)
+        } else {
+            (Phase::St, Tok::BodySt)
+        };
+        let start = self.peek(0).start;
+        self.emit(Token::inserted(marker, start));
+        if let Some(frame) = self.stack.last_mut() {
+            frame.phase = phase;
+        }
+    }
+
+    /// Whether a chart begins here, perhaps with its ACTIONs.
+    fn chart_here(&self) -> bool {
+        if self.step_here() || self.transition_here() {
+            return true;
+        }
+        if !self.action_here() {
+            return false;
+        }
+        let rest = self.tokens[self.at..].iter().enumerate();
+        let mut body = rest.take_while(|(_, t)| !Block::closed_by(t.kind).is_some_and(Block::is_pou));
+        body.any(|(i, t)| t.kind == Tok::Id && t.first && self.is(i, "INITIAL_STEP"))
+    }
+
+    /// `STEP name :`, `INITIAL_STEP name :`.
+    fn step_here(&self) -> bool {
+        (self.is(0, "INITIAL_STEP") || self.is(0, "STEP"))
+            && self.peek(1).kind == Tok::Id
+            && (self.peek(2).kind == Tok::Colon || self.is(0, "INITIAL_STEP") || !self.peek(1).first)
+    }
+
+    fn transition_here(&self) -> bool {
+        if !self.is(0, "TRANSITION") {
+            return false;
+        }
+        match self.peek(1).kind {
+            Tok::Id => true,
+            Tok::LParen => self.is(2, "PRIORITY") && self.peek(3).kind == Tok::Assign,
+            _ => false,
+        }
+    }
+
+    /// A token of a chart, outside of its steps.
+    pub(super) fn chart_token(&mut self) {
+        let t = self.peek(0);
+        if t.kind != Tok::Id {
+            return self.take(t.kind);
+        }
+        if self.step_here() {
+            self.open(Block::Step, Tok::Step);
+            if self.peek(0).kind == Tok::Id {
+                self.take(Tok::Id);
+            }
+        } else if self.transition_here() {
+            self.open(Block::Transition, Tok::Transition);
+        } else if self.action_here() {
+            self.next_action();
+        } else if !self.unsupported() {
+            self.take(Tok::Id);
+        }
+    }
+
+    /// Opens an ACTION inside a POU, or behind an ACTION that is not closed.
+    fn next_action(&mut self) {
+        let keep = match self.stack.first() {
+            Some(f) if f.block.is_pou() => 1,
+            _ => 0,
+        };
+        self.close_above(keep, self.peek(0));
+        if keep == 0 {
+            self.begin_item();
+        } else if self.stack.len() == 1 && self.stack[0].phase == Phase::Head {
+            self.insert(Tok::BodySt);
+            self.stack[0].phase = Phase::St;
+        }
+        self.open_action();
+    }
+
+    /// A token of a STEP.
+    pub(super) fn step_token(&mut self) {
+        let t = self.peek(0);
+        let between = matches!(self.last(), Tok::Semi | Tok::Colon | Tok::Id) && t.first;
+        if between && (self.step_here() || self.transition_here() || self.action_here()) {
+            return self.close_above(self.stack.len() - 1, t);
+        }
+        self.take(t.kind);
+    }
+
+    /// A token of a TRANSITION before its condition.
+    pub(super) fn transition_token(&mut self) {
+        let t = self.peek(0);
+        match t.kind {
+            Tok::Id if self.is(0, "FROM") && matches!(self.last(), Tok::Transition | Tok::Id | Tok::RParen) => {
+                self.take(Tok::From);
+            }
+            // The `:=` of the priority stands in parentheses.
+            Tok::Assign if self.parens == 0 => {
+                self.take(Tok::Assign);
+                self.set_phase(Phase::St);
+            }
+            Tok::Colon => {
+                self.at += 1;
+                if self.il_here() {
+                    self.emit(t);
+                    let start = self.peek(0).start;
+                    self.emit(Token::inserted(Tok::BodyIl, start));
+                    return self.set_phase(Phase::Il);
+                }
+                self.report.push(
+                    self.report
+                        .at(codes::MISSING_WORD, t.start, t.end, "`:=` is missing before this condition")
+                        .help("`:` stands before a condition in Instruction List, `:=` before an expression"),
+                );
+                self.emit(Token { kind: Tok::Assign, ..t });
+                self.set_phase(Phase::St);
+            }
+            kind => self.take(kind),
+        }
+    }
+
+    fn set_phase(&mut self, phase: Phase) {
+        if let Some(frame) = self.stack.last_mut() {
+            frame.phase = phase;
+        }
+    }
+
+    /// Whether a statement may begin with the next token.
+    pub(super) fn at_statement(&self) -> bool {
+        use Tok::*;
+        matches!(self.last(), Semi | Then | Do | CaseOf | Else | Repeat | BodySt | Colon)
+    }
+
+    /// A token of a body in Structured Text, or of a transition's condition.
+    pub(super) fn statement_token(&mut self) {
+        let t = self.peek(0);
+        match t.kind {
+            Tok::Id => return self.name_in_statement(t),
+            Tok::Else => self.branch(t, |f| matches!(f.block, Block::If | Block::Case)),
+            Tok::Elsif => self.branch(t, |f| f.block == Block::If),
+            Tok::Until => self.branch(t, |f| f.block == Block::Repeat),
+            Tok::Of => {
+                if let Some(frame) = self.stack.last_mut()
+                    && frame.block == Block::Case
+                    && !frame.has_of
+                {
+                    frame.has_of = true;
+                    return self.take(Tok::CaseOf);
+                }
+            }
+            Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.late_section(t),
+            kind => {
+                if let Some(block) = Block::statement(kind) {
+                    // A condition of a transition has no statements.
+                    return self.open(block, kind);
+                }
+            }
+        }
+        self.take(t.kind);
+    }
+
+    fn name_in_statement(&mut self, t: Token) {
+        if t.first || self.at_statement() {
+            if self.action_here() {
+                return self.next_action();
+            }
+            if self.is(0, "JMP") && self.peek(1).kind == Tok::Id && !self.peek(1).first {
+                return self.take(Tok::Jmp);
+            }
+            let chart = self.top() == Some(Block::Transition) && (self.step_here() || self.transition_here());
+            if chart {
+                return self.close_above(self.stack.len() - 1, t);
+            }
+            if self.at_statement() && self.unsupported() {
+                return;
+            }
+        }
+        self.take(Tok::Id);
+    }
+
+    /// ELSE, ELSIF or UNTIL: constructs inside the one that it belongs to are not closed.
+    fn branch(&mut self, t: Token, fits: impl Fn(&super::Frame) -> bool) {
+        let statements = self.stack.iter().rev().take_while(|f| f.block.is_statement()).count();
+        let first = self.stack.len() - statements;
+        let owner = self.stack[first..].iter().rposition(|f| fits(f) && !f.has_else);
+        if let Some(owner) = owner {
+            self.close_above(first + owner + 1, t);
+            if t.kind != Tok::Elsif
+                && let Some(frame) = self.stack.last_mut()
+            {
+                frame.has_else = true;
+            }
+        }
+    }
+
+    /// A section of variables behind the first statement: reported and left out.
+    fn late_section(&mut self, t: Token) {
+        let word = t.text(self.text).to_ascii_uppercase();
+        self.report.push(
+            self.report
+                .at(codes::DECLARATION_IN_BODY, t.start, t.end, format!("{word} stands behind the first statement"))
+                .help("all sections of variables stand before the body"),
+        );
+        while self.at < self.tokens.len() {
+            let kind = self.peek(0).kind;
+            if kind == Tok::EndVar {
+                self.at += 1;
+                if self.peek(0).kind == Tok::Semi {
+                    self.at += 1;
+                }
+                return;
+            }
+            if Block::closed_by(kind).is_some_and(|b| b.is_pou() || b.is_statement()) {
+                return;
+            }
+            self.at += 1;
+        }
+    }
+}

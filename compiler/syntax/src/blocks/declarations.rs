@@ -1,0 +1,277 @@
+//! Heads of POUs, sections of variables, types, resources: where their soft words and ends are.
+
+use super::{Block, Blocks, Phase};
+use crate::token::{Tok, Token};
+use plcc_diag::codes;
+
+/// Words that may stand behind a section keyword.
+const QUALIFIERS: &[&str] =
+    &["CONSTANT", "RETAIN", "NON_RETAIN", "PERSISTENT", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"];
+
+impl Blocks<'_, '_> {
+    /// What stands between the keyword of a POU and its first section.
+    pub(super) fn pou_head(&mut self, block: Block) {
+        if self.peek(0).kind != Tok::Id {
+            return;
+        }
+        self.take(Tok::Id);
+        for word in ["EXTENDS", "IMPLEMENTS"] {
+            let t = self.peek(0);
+            if self.is(0, word) && self.peek(1).kind == Tok::Id {
+                self.report.push(
+                    self.report
+                        .at(codes::NOT_SUPPORTED, t.start, t.end, format!("{word} is not supported"))
+                        .help("plcc compiles IEC 61131-3 without object orientation"),
+                );
+                self.at += 2;
+                while self.peek(0).kind == Tok::Comma && self.peek(1).kind == Tok::Id {
+                    self.at += 2;
+                }
+            }
+        }
+        if block == Block::Function {
+            let (t, next) = (self.peek(0), self.peek(1));
+            let type_alone = t.kind == Tok::Id && !t.first && (next.first || next.kind == Tok::Var);
+            if t.kind == Tok::Colon {
+                self.take(Tok::Colon);
+                self.result_type();
+            } else if type_alone {
+                let name = t.text(self.text);
+                self.report.push(
+                    self.report
+                        .at(codes::MISSING_WORD, t.start, t.start, "`:` is missing before the result type")
+                        .help(format!("write `: {name}`")),
+                );
+                self.insert(Tok::Colon);
+                self.result_type();
+            }
+        }
+        if self.peek(0).kind == Tok::Semi {
+            self.at += 1;
+        }
+    }
+
+    /// Emits the tokens of one type, as far as the body could be mistaken for its continuation.
+    fn result_type(&mut self) {
+        loop {
+            let t = self.peek(0);
+            if self.reference_word() {
+                continue;
+            }
+            match t.kind {
+                Tok::Array => {
+                    while !matches!(self.peek(0).kind, Tok::Of | Tok::Semi | Tok::Var | Tok::StartItem) {
+                        let kind = self.peek(0).kind;
+                        self.take(kind);
+                    }
+                    if self.peek(0).kind != Tok::Of {
+                        return;
+                    }
+                    self.take(Tok::Of);
+                }
+                Tok::Id => {
+                    self.take(Tok::Id);
+                    let length = self.peek(0).kind;
+                    if matches!(length, Tok::LBracket | Tok::LParen) && !self.peek(0).first {
+                        while !matches!(
+                            self.peek(0).kind,
+                            Tok::RBracket | Tok::RParen | Tok::Semi | Tok::Var | Tok::StartItem
+                        ) {
+                            let kind = self.peek(0).kind;
+                            self.take(kind);
+                        }
+                        if matches!(self.peek(0).kind, Tok::RBracket | Tok::RParen) {
+                            let kind = self.peek(0).kind;
+                            self.take(kind);
+                        }
+                    }
+                    return;
+                }
+                _ => return,
+            }
+        }
+    }
+
+    /// `REF_TO`, `POINTER TO`, `REFERENCE TO` before a type: one token.
+    fn reference_word(&mut self) -> bool {
+        let t = self.peek(0);
+        if t.kind != Tok::Id {
+            return false;
+        }
+        let two_words = self.peek(1).kind == Tok::To && (self.is(0, "POINTER") || self.is(0, "REFERENCE"));
+        if two_words {
+            let end = self.peek(1).end;
+            self.at += 2;
+            self.emit(Token { kind: Tok::RefWord, end, ..t });
+        } else if self.is(0, "REF_TO") && matches!(self.peek(1).kind, Tok::Id | Tok::Array | Tok::LParen | Tok::Struct)
+        {
+            self.take(Tok::RefWord);
+        }
+        self.last() == Tok::RefWord && self.at > 0 && self.tokens[self.at - 1].start >= t.start
+    }
+
+    /// Between the head of a POU or ACTION and its body.
+    pub(super) fn head_token(&mut self) {
+        let t = self.peek(0);
+        match t.kind {
+            Tok::Var | Tok::VarConfig | Tok::VarAccess if self.top() != Some(Block::Action) => self.open_section(),
+            Tok::Id if self.unsupported() => {}
+            _ => self.start_body(),
+        }
+    }
+
+    /// Opens a section of variables.
+    pub(super) fn open_section(&mut self) {
+        let kind = self.peek(0).kind;
+        self.open(Block::Var, kind);
+        while self.peek(0).kind == Tok::Id
+            && QUALIFIERS.iter().any(|q| self.is(0, q))
+            && !matches!(self.peek(1).kind, Tok::Colon | Tok::Comma | Tok::Dot)
+            && !self.is(1, "AT")
+        {
+            self.take(Tok::Qualifier);
+        }
+    }
+
+    /// Whether a declaration begins with the next token.
+    fn at_declaration(&self) -> bool {
+        use Tok::*;
+        matches!(self.last(), Semi | Var | VarConfig | VarAccess | Qualifier | Struct | Union | Type)
+    }
+
+    /// A token of VAR, STRUCT, UNION or TYPE.
+    pub(super) fn declaration_token(&mut self) {
+        let t = self.peek(0);
+        let start = self.at_declaration();
+        let in_pou = self.top() == Some(Block::Var) && self.stack.len() > 1;
+        match t.kind {
+            Tok::Struct => return self.open(Block::Struct, Tok::Struct),
+            Tok::Union => return self.open(Block::Union, Tok::Union),
+            Tok::Var | Tok::VarConfig | Tok::VarAccess if !self.names_something() => {
+                // The next section begins before this one has ended.
+                let var = self.stack.iter().rposition(|f| matches!(f.block, Block::Var | Block::Type)).unwrap_or(0);
+                return self.close_above(var, t);
+            }
+            Tok::Id if start && in_pou && self.body_begins() => return self.close_above(self.stack.len() - 1, t),
+            Tok::Id if self.reference_word() => return,
+            Tok::Id => {
+                let kind = self.soft_word();
+                return self.take(kind);
+            }
+            _ => {}
+        }
+        if self.last() != Tok::Assign && self.names_something() && start {
+            self.reserved_name(t);
+            return self.take(Tok::Id);
+        }
+        if in_pou && Block::statement(t.kind).is_some() {
+            return self.close_above(self.stack.len() - 1, t);
+        }
+        self.take(t.kind);
+    }
+
+    /// Whether the next token, a reserved word, stands where only a name can.
+    fn names_something(&self) -> bool {
+        self.peek(0).kind.is_reserved() && matches!(self.peek(1).kind, Tok::Colon | Tok::Comma)
+    }
+
+    /// A reserved word that stands for a name.
+    pub(super) fn reserved_name(&mut self, t: Token) {
+        let word = t.text(self.text);
+        self.report.push(
+            self.report
+                .at(codes::RESERVED_WORD, t.start, t.end, format!("`{word}` is a reserved word"))
+                .help("choose another name"),
+        );
+    }
+
+    /// Whether the name where a declaration should begin belongs to a statement instead, END_VAR being forgotten.
+    fn body_begins(&mut self) -> bool {
+        let next = self.peek(1).kind;
+        let statement = match next {
+            Tok::Assign | Tok::LParen | Tok::LBracket | Tok::Caret => true,
+            Tok::Dot => self.stack.last().is_some_and(|f| f.opener.kind == Tok::Var),
+            _ => false,
+        };
+        if !statement {
+            return false;
+        }
+        // An END_VAR further on shows that it is a faulty declaration.
+        if self.next_end_var < self.at {
+            let stop = |t: &Token| {
+                matches!(t.kind, Tok::EndVar | Tok::Var) || Block::closed_by(t.kind).is_some_and(Block::is_pou)
+            };
+            self.next_end_var = self.tokens[self.at..].iter().position(stop).map_or(self.tokens.len(), |n| self.at + n);
+        }
+        self.tokens.get(self.next_end_var).is_none_or(|t| t.kind != Tok::EndVar)
+    }
+
+    /// The kind of the next token, a name, in a declaration.
+    fn soft_word(&self) -> Tok {
+        let next = self.peek(1).kind;
+        if self.is(0, "AT") && matches!(next, Tok::Address | Tok::Bad) {
+            return Tok::At;
+        }
+        if self.last() == Tok::Id && (self.is(0, "R_EDGE") || self.is(0, "F_EDGE")) {
+            return Tok::Edge;
+        }
+        if matches!(self.last(), Tok::Id | Tok::RBracket | Tok::RParen)
+            && (self.is(0, "READ_ONLY") || self.is(0, "READ_WRITE"))
+        {
+            return Tok::Access;
+        }
+        Tok::Id
+    }
+
+    /// A token of CONFIGURATION or RESOURCE.
+    pub(super) fn resource_token(&mut self) {
+        let t = self.peek(0);
+        match t.kind {
+            Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.open_section(),
+            Tok::Id => {}
+            kind => return self.take(kind),
+        }
+        let name_follows = self.peek(1).kind == Tok::Id && !self.peek(1).first;
+        let kind = match self.last() {
+            Tok::Program if name_follows && QUALIFIERS.iter().any(|q| self.is(0, q)) && !self.is(1, "WITH") => {
+                Tok::Qualifier
+            }
+            Tok::Id if self.is(0, "ON") && self.peek(1).kind == Tok::Id => Tok::On,
+            Tok::Id | Tok::RBracket | Tok::RParen if self.is(0, "WITH") => Tok::With,
+            Tok::Program | Tok::On | Tok::With | Tok::Task | Tok::Resource | Tok::Configuration => Tok::Id,
+            _ if name_follows && self.is(0, "RESOURCE") => {
+                if self.top() == Some(Block::Resource) {
+                    self.close_above(self.stack.len() - 1, t);
+                }
+                return self.open(Block::Resource, Tok::Resource);
+            }
+            _ if name_follows && self.is(0, "TASK") => Tok::Task,
+            _ => Tok::Id,
+        };
+        self.take(kind);
+    }
+
+    /// Whether the next tokens open an ACTION: two names side by side, which nothing else can be.
+    pub(super) fn action_here(&self) -> bool {
+        self.is(0, "ACTION") && self.peek(1).kind == Tok::Id && !self.peek(1).first
+    }
+
+    /// Opens an ACTION and reads its head.
+    pub(super) fn open_action(&mut self) {
+        self.open(Block::Action, Tok::Action);
+        self.take(Tok::Id);
+        if self.peek(0).kind == Tok::Dot && self.peek(1).kind == Tok::Id {
+            self.take(Tok::Dot);
+            self.take(Tok::Id);
+        }
+        if self.peek(0).kind == Tok::Colon {
+            self.take(Tok::Colon);
+        } else {
+            // Without a colon the name ends with its line.
+            self.insert(Tok::Colon);
+        }
+        if let Some(frame) = self.stack.last_mut() {
+            frame.phase = Phase::Head;
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Instruction List: how a body is recognised, and its lines, which end where the text's lines do.
+
+use super::{Block, Blocks};
+use crate::token::{Tok, Token};
+
+/// Operators of IL that are words.
+const OPERATORS: &[&str] = &[
+    "LD", "LDN", "ST", "STN", "S", "R", "AND", "ANDN", "OR", "ORN", "XOR", "XORN", "NOT", "ADD", "SUB", "MUL", "DIV",
+    "MOD", "GT", "GE", "EQ", "NE", "LE", "LT", "JMP", "JMPC", "JMPCN", "CAL", "CALC", "CALCN", "RET", "RETC", "RETCN",
+];
+/// Operators that take `(`.
+const DEFERRED: &[&str] = &[
+    "AND", "ANDN", "OR", "ORN", "XOR", "XORN", "ADD", "SUB", "MUL", "DIV", "MOD", "GT", "GE", "EQ", "NE", "LE", "LT",
+    "&", "&N",
+];
+/// How far the end of an argument list is looked for.
+const MAX_LOOK: usize = 5000;
+
+fn listed(words: &[&str], text: &str) -> bool {
+    words.iter().any(|w| w.eq_ignore_ascii_case(text))
+}
+
+impl Blocks<'_, '_> {
+    /// Whether the body that begins here is in Instruction List.
+    pub(super) fn il_here(&self) -> bool {
+        let mut i = 0;
+        while self.peek(i).kind == Tok::Id && self.peek(i + 1).kind == Tok::Colon && i < MAX_LOOK {
+            i += 2;
+        }
+        self.il_line_at(i)
+    }
+
+    /// Whether the token `i` ahead begins an instruction and not a statement.
+    fn il_line_at(&self, i: usize) -> bool {
+        let (word, next) = (self.peek(i), self.peek(i + 1));
+        if !matches!(word.kind, Tok::Id | Tok::Op | Tok::Not) {
+            return false;
+        }
+        let operator = listed(OPERATORS, word.text(self.text)) || word.kind == Tok::Op;
+        let alone = next.first || Block::closed_by(next.kind).is_some();
+        match next.kind {
+            _ if alone => operator,
+            Tok::LParen => {
+                let Some(end) = self.closing_paren(i + 1) else { return false };
+                let after = self.peek(end + 1);
+                let ends = after.first || Block::closed_by(after.kind).is_some();
+                ends && (operator || self.operator_at(end + 1))
+            }
+            Tok::Id | Tok::Int | Tok::Lit | Tok::Qualified | Tok::Address | Tok::Minus | Tok::Bad => {
+                let mut end = i + 1;
+                while !self.peek(end).first && Block::closed_by(self.peek(end).kind).is_none() {
+                    if matches!(self.peek(end).kind, Tok::Semi | Tok::Assign) {
+                        // `CAL t(IN := x)` has its `:=` in parentheses.
+                        let call = listed(&["CAL", "CALC", "CALCN"], word.text(self.text));
+                        return call && self.peek(end).kind == Tok::Assign;
+                    }
+                    end += 1;
+                }
+                next.kind != Tok::Minus && operator || self.operator_at(end)
+            }
+            _ => false,
+        }
+    }
+
+    fn operator_at(&self, i: usize) -> bool {
+        let (t, next) = (self.peek(i), self.peek(i + 1));
+        matches!(t.kind, Tok::Id | Tok::Op | Tok::Not)
+            && listed(OPERATORS, t.text(self.text))
+            && !matches!(next.kind, Tok::Assign | Tok::Arrow | Tok::Dot | Tok::LBracket | Tok::Semi)
+    }
+
+    /// Where the parenthesis that opens `i` ahead closes.
+    fn closing_paren(&self, i: usize) -> Option<usize> {
+        let mut depth = 0;
+        for j in i..i + MAX_LOOK {
+            match self.peek(j).kind {
+                Tok::LParen => depth += 1,
+                Tok::RParen => {
+                    depth -= 1;
+                    if depth == 0 {
+                        return Some(j);
+                    }
+                }
+                Tok::Semi | Tok::StartItem => return None,
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// One line of IL, up to the end of the line.
+    pub(super) fn il_line(&mut self) {
+        if self.action_here() {
+            return self.statement_token();
+        }
+        if self.peek(0).kind == Tok::Id && self.peek(1).kind == Tok::Colon {
+            self.take(Tok::IlLabel);
+            self.take(Tok::Colon);
+            if self.line_ends() {
+                return self.insert(Tok::Eol);
+            }
+        }
+        let mut deferred = false;
+        if matches!(self.peek(0).kind, Tok::Id | Tok::Op | Tok::Not) {
+            deferred = self.il_operator();
+        } else {
+            // `)` closes a deferred operation. Anything else is taken so that the grammar has something to report.
+            let kind = self.peek(0).kind;
+            self.take(kind);
+        }
+        if deferred {
+            let kind = self.peek(0).kind;
+            self.take(kind);
+        }
+        let mut depth = 0u32;
+        while self.at < self.tokens.len() {
+            let t = self.peek(0);
+            if Block::closed_by(t.kind).is_some() || self.item_here().is_some() {
+                break;
+            }
+            if t.first && (depth == 0 || self.operator_at(0)) {
+                break;
+            }
+            match t.kind {
+                Tok::LParen => depth += 1,
+                Tok::RParen => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            self.take(t.kind);
+        }
+        self.insert(Tok::Eol);
+    }
+
+    fn line_ends(&self) -> bool {
+        let t = self.peek(0);
+        t.first || Block::closed_by(t.kind).is_some()
+    }
+
+    /// Emits the first word of an instruction; whether it opens a deferred operation with the `(` that follows.
+    fn il_operator(&mut self) -> bool {
+        let t = self.peek(0);
+        let next = self.peek(1);
+        let text = t.text(self.text);
+        let mut length = 1;
+        let mut end = t.end;
+        if text == "&" && self.is(1, "N") && next.start == t.end {
+            length = 2;
+            end = next.end;
+        }
+        let word = &self.text[t.start as usize..end as usize];
+        let open = self.peek(length).kind == Tok::LParen && !self.peek(length).first;
+        let kind = match open {
+            true if listed(DEFERRED, word) => Tok::IlDefer,
+            true if !listed(OPERATORS, word) => Tok::IlFunction,
+            _ => Tok::IlOp,
+        };
+        self.at += length;
+        self.emit(Token { kind, end, ..t });
+        kind == Tok::IlDefer
+    }
+}

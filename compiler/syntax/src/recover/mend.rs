@@ -1,0 +1,354 @@
+//! The mends that keep a statement: what is missing is inserted, what is plainly meant otherwise is replaced.
+
+use super::segment::{Surroundings, is_boundary, is_end};
+use super::{Recovery, Refused};
+use crate::token::{Tok, Token};
+use plcc_diag::{Code, Diagnostic, codes};
+use std::ops::Range;
+
+impl Recovery<'_, '_> {
+    /// Mends the place if the cause is plain; the message says what it was.
+    pub(super) fn insert_missing(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        self.wrong_sign(refused)
+            .or_else(|| self.value_on_next_line(refused, segment))
+            .or_else(|| self.reserved_word(refused))
+            .or_else(|| self.branch_word(refused))
+            .or_else(|| self.block_word(refused, segment))
+            .or_else(|| self.colon(refused, segment))
+            .or_else(|| self.operand(refused))
+            .or_else(|| self.closing(refused, segment))
+            .or_else(|| self.too_much(refused))
+            .or_else(|| self.semicolon(refused))
+    }
+
+    fn missing(&self, code: Code, at: usize, message: impl Into<String>) -> Diagnostic {
+        let end = self.end_before(at);
+        self.report.at(code, end, end, message)
+    }
+
+    /// Where the token before `at` ends.
+    fn end_before(&self, at: usize) -> u32 {
+        at.checked_sub(1).and_then(|i| self.tokens.get(i)).map_or(0, |t| t.end)
+    }
+
+    fn insert(&mut self, at: usize, kind: Tok) {
+        let end = self.end_before(at);
+        self.tokens.insert(at, Token::inserted(kind, end));
+    }
+
+    fn begins_line(&self, at: usize) -> bool {
+        self.tokens.get(at).is_none_or(|t| t.first || t.is_inserted())
+    }
+
+    /// `=` for `:=`, `=>` for `>=`, a second `:=`.
+    fn wrong_sign(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        let at = refused.at;
+        let (start, end) = self.bytes(at);
+        match self.kind(at) {
+            Tok::To if refused.wants(":=") => {
+                let first = self.tokens[..at].iter().rposition(|t| t.kind == Tok::For)? + 1;
+                let eq = first + self.tokens[first..at].iter().position(|t| t.kind == Tok::Eq)?;
+                self.tokens[eq].kind = Tok::Assign;
+                let (start, end) = self.bytes(eq);
+                let message = self.report.at(codes::EQUALS_FOR_ASSIGN, start, end, "`=` compares, it does not assign");
+                Some(message.help("write `:=`"))
+            }
+            Tok::Eq if refused.wants(":=") => {
+                self.tokens[at].kind = Tok::Assign;
+                let message = self.report.at(codes::EQUALS_FOR_ASSIGN, start, end, "`=` compares, it does not assign");
+                Some(message.help("write `:=`"))
+            }
+            Tok::Arrow if refused.wants("relation") => {
+                self.tokens[at].kind = Tok::Rel;
+                let message =
+                    self.report.at(codes::FOREIGN_OPERATOR, start, end, "`=>` connects an output, it does not compare");
+                Some(message.help("greater or equal is written `>=`"))
+            }
+            Tok::Assign if self.kind(at.wrapping_sub(1)) == Tok::Assign => {
+                self.tokens.remove(at);
+                let message = self.report.at(codes::UNEXPECTED, start, end, "`:=` stands twice");
+                Some(message.help("remove one"))
+            }
+            _ => None,
+        }
+    }
+
+    /// `x :=` at the end of a line and `y := 1;` on the next: the value of x is missing, not the `;`.
+    fn value_on_next_line(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        if self.kind(refused.at) != Tok::Assign || self.surroundings(refused.at) != Surroundings::Statements {
+            return None;
+        }
+        let line = self.tokens[segment.start..refused.at].iter().rposition(|t| t.first)? + segment.start;
+        let before = self.kind(line.checked_sub(1).filter(|i| *i > segment.start)?);
+        if !is_operator(before) {
+            return None;
+        }
+        let message = self.missing(codes::MISSING_OPERAND, line, "an expression is missing here");
+        self.insert(line, Tok::Bad);
+        self.insert(line + 1, Tok::Semi);
+        Some(message.help("this line ends before its expression does"))
+    }
+
+    /// A reserved word used like a variable.
+    fn reserved_word(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        use Tok::*;
+        let t = *self.tokens.get(refused.at)?;
+        let word = matches!(t.kind, Type | Program | Function | FunctionBlock | Array | Struct | Union | Var);
+        if !word || !refused.wants("name") || self.surroundings(refused.at) == Surroundings::Declarations {
+            return None;
+        }
+        self.tokens[refused.at].kind = Tok::Id;
+        let text = t.text(self.text);
+        let message = self.report.at(codes::RESERVED_WORD, t.start, t.end, format!("`{text}` is a reserved word"));
+        Some(message.help("choose another name"))
+    }
+
+    /// A second ELSE, ELSIF behind ELSE, REPEAT without UNTIL.
+    fn branch_word(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        let at = refused.at;
+        let (start, end) = self.bytes(at);
+        match self.kind(at) {
+            Tok::Else | Tok::Elsif if !refused.wants(";") || refused.wants("IF") => {
+                let word = self.kind(at).describe();
+                let stop = if self.kind(at) == Tok::Elsif {
+                    let then = self.tokens[at..].iter().position(|t| t.kind == Tok::Then)?;
+                    at + then
+                } else {
+                    at
+                };
+                self.tokens.drain(at..=stop);
+                let message =
+                    self.report.at(codes::UNEXPECTED, start, end, format!("{word} does not belong to an open IF here"));
+                Some(message.help("an IF has any number of ELSIF and then at most one ELSE"))
+            }
+            Tok::EndRepeat if refused.wants("UNTIL") => {
+                let message = self.report.at(codes::MISSING_WORD, start, end, "UNTIL is missing in this REPEAT");
+                self.insert(at, Tok::Until);
+                self.insert(at + 1, Tok::Bad);
+                Some(message.help("write `UNTIL condition END_REPEAT`"))
+            }
+            _ => None,
+        }
+    }
+
+    /// THEN, DO, OF.
+    fn block_word(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let (kind, of) =
+            [("THEN", Tok::Then, "IF or ELSIF"), ("DO", Tok::Do, "FOR or WHILE"), ("CASE OF", Tok::CaseOf, "CASE")]
+                .into_iter()
+                .find_map(|(name, kind, of)| refused.wants(name).then_some((kind, of)))?;
+        let word = kind.describe();
+        let (start, end) = self.bytes(at);
+        let help = format!("write `{word}`");
+        if matches!(self.kind(at), Tok::Then | Tok::Do | Tok::Of | Tok::CaseOf) {
+            let message = format!("{of} needs {word} here, not `{}`", self.tokens[at].text(self.text));
+            self.tokens[at].kind = kind;
+            return Some(self.report.at(codes::MISSING_WORD, start, end, message).help(help));
+        }
+        if self.kind(at) == Tok::Semi && self.kind(at + 1) == kind {
+            self.tokens.remove(at);
+            let message = self.report.at(codes::UNEXPECTED, start, end, format!("`;` does not belong before {word}"));
+            return Some(message.help("remove it"));
+        }
+        // When the word does follow on this line, something before it is wrong.
+        let follows = self.kind(segment.end) == kind;
+        if follows && !self.tokens[at..=segment.end].iter().any(|t| t.first) {
+            return None;
+        }
+        let message = self.missing(codes::MISSING_WORD, at, format!("{word} is missing behind this")).help(help);
+        self.insert(at, kind);
+        Some(message)
+    }
+
+    /// `:` and the type in a declaration, `:` behind a label or the name of a step.
+    fn colon(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let kind = self.kind(at);
+        if refused.wants_type() && (is_boundary(kind) || matches!(kind, Tok::Assign | Tok::Comma | Tok::RParen)) {
+            let message = self.missing(codes::MISSING_OPERAND, at, "a type is missing here");
+            self.insert(at, Tok::Bad);
+            return Some(message.help("write for example `: INT`"));
+        }
+        if refused.wants("OF") && matches!(kind, Tok::Id | Tok::Array | Tok::RefWord | Tok::LParen | Tok::Struct) {
+            let message = self.missing(codes::MISSING_WORD, at, "OF is missing before the type of the elements");
+            self.insert(at, Tok::Of);
+            return Some(message.help("an array is written `ARRAY [1..3] OF INT`"));
+        }
+        let has_to = self.tokens[segment.clone()].iter().any(|t| t.kind == Tok::To);
+        if refused.wants("TO") && !has_to && (is_operand_start(kind) || kind == Tok::LParen) {
+            let message = self.missing(codes::MISSING_WORD, at, "TO is missing here");
+            self.insert(at, Tok::To);
+            return Some(message.help("write `TO`"));
+        }
+        if !refused.wants(":") {
+            return None;
+        }
+        let declaration = self.surroundings(at) == Surroundings::Declarations;
+        let first = self.kind(segment.start);
+        match kind {
+            Tok::Semi | Tok::Assign if declaration => {
+                let name = self.tokens[segment.start].text(self.text).to_string();
+                let message = self.missing(codes::MISSING_OPERAND, at, format!("the type of `{name}` is missing"));
+                self.insert(at, Tok::Colon);
+                self.insert(at + 1, Tok::Bad);
+                Some(message.help(format!("write for example `{name} : INT`")))
+            }
+            Tok::Id | Tok::Array | Tok::RefWord | Tok::Struct | Tok::Union | Tok::LParen if declaration => {
+                let message = self.missing(codes::MISSING_WORD, at, "`:` is missing before the type");
+                self.insert(at, Tok::Colon);
+                Some(message.help("a declaration is written `name : type;`"))
+            }
+            Tok::Id if !refused.wants(";") || matches!(first, Tok::Int | Tok::Lit | Tok::Qualified) => {
+                let message = self.missing(codes::MISSING_WORD, at, "`:` is missing here");
+                self.insert(at, Tok::Colon);
+                Some(message)
+            }
+            _ => None,
+        }
+    }
+
+    /// An expression.
+    fn operand(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        use Tok::*;
+        let at = refused.at;
+        let kind = self.kind(at);
+        let nothing = is_boundary(kind)
+            || matches!(kind, RParen | RBracket | Comma | Rel | Op | Eq | Star | DotDot | To | By)
+            || at >= self.tokens.len();
+        if !refused.wants_operand() || !nothing {
+            return None;
+        }
+        let message = match (self.kind(at.wrapping_sub(1)), kind) {
+            (_, Then) | (While, Do) => "a condition is missing here".to_string(),
+            (before, _) if is_operator(before) => {
+                let sign = self.tokens[at - 1].text(self.text);
+                format!("an expression is missing behind `{sign}`")
+            }
+            _ => "an expression is missing here".to_string(),
+        };
+        let message = self.missing(codes::MISSING_OPERAND, at, message);
+        self.insert(at, Bad);
+        Some(message)
+    }
+
+    /// `)`, `]`, and the `,` between two arguments.
+    fn closing(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let kind = self.kind(at);
+        let (close, sign) = match (refused.wants(")"), refused.wants("]")) {
+            (true, _) => (Tok::RParen, ")"),
+            (_, true) => (Tok::RBracket, "]"),
+            _ => return None,
+        };
+        let closes_later = self.closes_later(at..segment.end);
+        if refused.wants(",") && closes_later && is_operand_start(kind) {
+            let message = self.missing(codes::MISSING_WORD, at, "`,` is missing here");
+            self.insert(at, Tok::Comma);
+            return Some(message.help("arguments and elements are separated by `,`"));
+        }
+        let ends = is_boundary(kind)
+            || self.begins_line(at)
+            || matches!(kind, Tok::RBracket | Tok::RParen | Tok::Assign | Tok::DotDot | Tok::To | Tok::By | Tok::Of);
+        if !ends || closes_later && kind != Tok::RBracket && kind != Tok::RParen {
+            return None;
+        }
+        let mut message = self.missing(codes::MISSING_WORD, at, format!("`{sign}` is missing here"));
+        if let Some(open) = self.opener(at) {
+            let t = self.tokens[open];
+            message = message.also(self.report.span(t.start, t.end), "opened here");
+            let matching = if t.kind == Tok::LParen { Tok::RParen } else { Tok::RBracket };
+            if matching != close {
+                return None;
+            }
+        }
+        if matches!(kind, Tok::RBracket | Tok::RParen) {
+            // A closing sign of the other kind: taken for the right one if that one does not follow.
+            self.tokens[at].kind = close;
+        } else {
+            self.insert(at, close);
+            if self.kind(at.wrapping_sub(1)) == Tok::Eol {
+                self.insert(at + 1, Tok::Eol);
+            }
+        }
+        Some(message.help(format!("write `{sign}`")))
+    }
+
+    /// Whether more parentheses close than open in `range`.
+    fn closes_later(&self, range: Range<usize>) -> bool {
+        let mut depth = 0i32;
+        for t in &self.tokens[range.start.min(range.end)..range.end] {
+            match t.kind {
+                Tok::LParen | Tok::LBracket => depth += 1,
+                Tok::RParen | Tok::RBracket => depth -= 1,
+                _ => {}
+            }
+            if depth < 0 {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The parenthesis or bracket that is open before `at`.
+    fn opener(&self, at: usize) -> Option<usize> {
+        let mut depth = 0;
+        for (i, t) in self.tokens[..at.min(self.tokens.len())].iter().enumerate().rev() {
+            match t.kind {
+                Tok::RParen | Tok::RBracket => depth += 1,
+                Tok::LParen | Tok::LBracket if depth == 0 => return Some(i),
+                Tok::LParen | Tok::LBracket => depth -= 1,
+                Tok::Semi => return None,
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// A `)` or `]` that nothing opens.
+    fn too_much(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        let at = refused.at;
+        if !matches!(self.kind(at), Tok::RParen | Tok::RBracket) || self.opener(at).is_some() {
+            return None;
+        }
+        let t = self.tokens.remove(at);
+        let message = format!("`{}` closes nothing", t.text(self.text));
+        Some(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it, or write what opens it"))
+    }
+
+    /// The `;` behind a statement or declaration.
+    fn semicolon(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        let at = refused.at;
+        if !refused.wants(";") {
+            return None;
+        }
+        let kind = self.kind(at);
+        let next = self.kind(at + 1);
+        let new_statement = kind == Tok::Id
+            && matches!(next, Tok::Assign | Tok::LParen | Tok::Dot | Tok::LBracket | Tok::Colon | Tok::Caret);
+        let ends = is_end(kind)
+            || is_boundary(kind) && !matches!(kind, Tok::Then | Tok::Do | Tok::CaseOf | Tok::Qualifier)
+            || kind == Tok::Jmp
+            || self.begins_line(at) && !is_operator(kind)
+            || new_statement;
+        if !ends {
+            return None;
+        }
+        let declaration = matches!(self.surroundings(at), Surroundings::Declarations | Surroundings::Resource);
+        let what = if declaration { "declaration" } else { "statement" };
+        let message =
+            self.missing(codes::MISSING_SEMICOLON, at, format!("`;` expected after this {what}")).help("write `;`");
+        self.insert(at, Tok::Semi);
+        Some(message)
+    }
+}
+
+fn is_operator(kind: Tok) -> bool {
+    use Tok::*;
+    matches!(kind, Assign | Attempt | Eq | Plus | Minus | Star | Rel | Op | Not | Arrow)
+}
+
+fn is_operand_start(kind: Tok) -> bool {
+    use Tok::*;
+    matches!(kind, Id | Int | Lit | Qualified | Address | Not | Bad)
+}

@@ -1,0 +1,82 @@
+//! What a message says: classes of expectation, never a list of tokens.
+
+use super::{Recovery, Refused};
+use crate::token::{Tok, word_kind};
+use plcc_diag::{Diagnostic, codes};
+
+impl Recovery<'_, '_> {
+    /// "expected ..., found ...".
+    pub(super) fn unexpected(&self, refused: &Refused) -> Diagnostic {
+        let (start, end) = self.bytes(refused.at);
+        let found = self.found(refused.at);
+        let before = self.kind(refused.at.wrapping_sub(1));
+        let nameless = refused.wants("name") && refused.expected.len() == 1;
+        let message = match expectation(refused) {
+            _ if nameless && !matches!(before, Tok::Comma | Tok::Dot) => {
+                format!("a name is missing behind {}", before.describe())
+            }
+            Some(expected) => format!("expected {expected}, found {found}"),
+            None => format!("{found} cannot stand here"),
+        };
+        let mut diagnostic = self.report.at(codes::UNEXPECTED, start, end, message);
+        let t = self.tokens.get(refused.at);
+        let word = t.map_or("", |t| t.text(self.text));
+        if !word.is_empty() && word_kind(word).is_reserved() && refused.wants("name") && !refused.wants("IF") {
+            diagnostic = diagnostic.help(format!("`{word}` is a reserved word and cannot be a name"));
+        }
+        diagnostic
+    }
+
+    /// The token `at` as a message names it.
+    pub(super) fn found(&self, at: usize) -> String {
+        match self.tokens.get(at) {
+            None => "the end".into(),
+            Some(t) if t.kind == Tok::Bad => t.kind.describe().into(),
+            Some(t) if t.is_inserted() => match self.tokens[at..].iter().find(|t| !t.is_inserted()) {
+                Some(t) => format!("`{}`", crate::blocks::shorten(t.text(self.text))),
+                None => "the end".into(),
+            },
+            Some(t) => format!("`{}`", crate::blocks::shorten(t.text(self.text))),
+        }
+    }
+}
+
+/// What the grammar would accept, in the words of IEC.
+fn expectation(refused: &Refused) -> Option<String> {
+    if refused.wants("IF") {
+        return Some("a statement".into());
+    }
+    if refused.wants_type() {
+        return Some("a type".into());
+    }
+    let mut parts: Vec<String> = Vec::new();
+    if refused.wants("int") {
+        parts.push("an expression".into());
+    } else if refused.wants("name") {
+        parts.push("a name".into());
+    } else if refused.wants("operator") {
+        parts.push("an operator".into());
+    }
+    for word in ["STEP", "THEN", "DO", "TO", "UNTIL", "FROM"] {
+        if refused.wants(word) {
+            parts.push(word.into());
+        }
+    }
+    if refused.wants("CASE OF") || refused.wants("OF") {
+        parts.push("OF".into());
+    }
+    if refused.wants("end of line") {
+        parts.push("the end of the line".into());
+    }
+    for sign in [":=", ";", ":", ")", "]", ",", ".."] {
+        if parts.len() < 3 && refused.wants(sign) {
+            parts.push(format!("`{sign}`"));
+        }
+    }
+    if parts.is_empty() {
+        let ends = refused.expected.iter().map(|e| e.trim_matches('"')).find(|e| e.starts_with("END_"));
+        parts.extend(ends.map(String::from));
+    }
+    let last = parts.pop()?;
+    Some(if parts.is_empty() { last } else { format!("{} or {last}", parts.join(", ")) })
+}

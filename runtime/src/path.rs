@@ -1,0 +1,454 @@
+//! Names of variables (`Main.t.Q`, `Main.a[3]`, `Res.P1.x`) to places in the region, and values there to text and back.
+
+use crate::image::{Image, TypeDesc};
+use plcc_stdlib::elem::Elem;
+use plcc_stdlib::value::{self, Kind, Value};
+use std::fmt::Write;
+
+/// More columns than anybody reads; a bound for arrays of arrays.
+pub const MAX_COLUMNS: usize = 1_000_000;
+
+/// A variable of elementary, enumeration or string type.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Leaf {
+    /// Where in the region.
+    pub offset: u32,
+    /// The bit of a packed BOOL.
+    pub bit: Option<u8>,
+    /// Index of its type.
+    pub ty: u32,
+    /// CONSTANT.
+    pub constant: bool,
+}
+
+/// Something with a name: a leaf, an aggregate, or a program with all its variables.
+#[derive(Debug, Clone)]
+struct Found {
+    leaf: Leaf,
+}
+
+/// A number inside brackets, or a name behind a dot.
+#[derive(Debug, PartialEq, Eq)]
+enum Part<'p> {
+    Name(&'p str),
+    Index(Vec<i64>),
+}
+
+fn parts(path: &str) -> Result<Vec<Part<'_>>, String> {
+    let mut parts = Vec::new();
+    let mut rest = path.trim();
+    loop {
+        let end = rest.find(['.', '[']).unwrap_or(rest.len());
+        let name = rest[..end].trim();
+        if name.is_empty() {
+            return Err(format!("`{path}` is no name of a variable"));
+        }
+        parts.push(Part::Name(name));
+        rest = &rest[end..];
+        while let Some(inner) = rest.strip_prefix('[') {
+            let close = inner.find(']').ok_or_else(|| format!("`{path}`: a `]` is missing"))?;
+            let numbers: Result<Vec<i64>, _> = inner[..close].split(',').map(|n| n.trim().parse()).collect();
+            parts.push(Part::Index(numbers.map_err(|_| format!("`{path}`: an index must be a number"))?));
+            rest = &inner[close + 1..];
+        }
+        match rest.strip_prefix('.') {
+            Some(more) => rest = more,
+            None if rest.is_empty() => return Ok(parts),
+            None => return Err(format!("`{path}` is no name of a variable")),
+        }
+    }
+}
+
+/// Finds names in an image.
+#[derive(Debug)]
+pub struct Resolver<'i> {
+    image: &'i Image,
+    /// Roots by upper-case name.
+    roots: std::collections::HashMap<String, usize>,
+}
+
+impl<'i> Resolver<'i> {
+    /// For one image.
+    pub fn new(image: &'i Image) -> Self {
+        let roots = image.roots.iter().enumerate().map(|(n, r)| (r.name.to_ascii_uppercase(), n)).collect();
+        Self { image, roots }
+    }
+
+    /// The columns that a name stands for: itself, or one per element of an aggregate, in order of declaration.
+    pub fn columns(&self, path: &str) -> Result<Vec<(String, Leaf)>, String> {
+        let mut out = Vec::new();
+        match self.find(path) {
+            Ok(found) => self.expand(path.trim(), &found.leaf, &mut out)?,
+            Err(error) => {
+                // A program's name stands for all its variables.
+                let prefix = format!("{}.", self.strip(path.trim()).to_ascii_uppercase());
+                let own = self.image.roots.iter().filter(|r| r.name.to_ascii_uppercase().starts_with(&prefix));
+                for root in own {
+                    let name = format!("{}.{}", path.trim(), &root.name[prefix.len()..]);
+                    self.expand(&name, &self.root_leaf(root), &mut out)?;
+                }
+                if out.is_empty() {
+                    return Err(error);
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// Every variable of the application.
+    pub fn all(&self) -> Result<Vec<(String, Leaf)>, String> {
+        let mut out = Vec::new();
+        for root in self.image.roots.iter().filter(|r| !r.name.contains('$')) {
+            self.expand(&root.name, &self.root_leaf(root), &mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// One variable, which must not be an aggregate.
+    pub fn leaf(&self, path: &str) -> Result<Leaf, String> {
+        let found = self.find(path)?;
+        match self.image.types.get(found.leaf.ty as usize) {
+            Some(TypeDesc::Array { .. } | TypeDesc::Struct { .. }) => {
+                Err(format!("`{}` is an aggregate; name its elements", path.trim()))
+            }
+            _ => Ok(found.leaf),
+        }
+    }
+
+    fn root_leaf(&self, root: &crate::image::Root) -> Leaf {
+        Leaf { offset: root.offset, bit: root.bit, ty: root.ty, constant: root.constant }
+    }
+
+    /// The name without configuration and resource in front.
+    fn strip<'p>(&self, path: &'p str) -> &'p str {
+        let mut rest = path;
+        for prefix in [&self.image.configuration, &self.image.resource] {
+            if prefix.is_empty() {
+                continue;
+            }
+            if let Some((first, more)) = rest.split_once('.')
+                && first.eq_ignore_ascii_case(prefix)
+            {
+                rest = more;
+            }
+        }
+        rest
+    }
+
+    fn find(&self, path: &str) -> Result<Found, String> {
+        // A name as it is wins over the same name behind a prefix.
+        match self.find_exact(path.trim()) {
+            Ok(found) => Ok(found),
+            Err(error) => {
+                let stripped = self.strip(path.trim());
+                if stripped.len() == path.trim().len() { Err(error) } else { self.find_exact(stripped) }
+            }
+        }
+    }
+
+    fn find_exact(&self, path: &str) -> Result<Found, String> {
+        let parts = parts(path)?;
+        let name = |n: usize| match parts.get(n) {
+            Some(Part::Name(name)) => Some(name.to_ascii_uppercase()),
+            _ => None,
+        };
+        // A program's variables are roots of two names.
+        let double = name(0).zip(name(1)).map(|(a, b)| format!("{a}.{b}"));
+        let (root, used) = match double.and_then(|d| self.roots.get(&d)) {
+            Some(root) => (*root, 2),
+            None => match name(0).and_then(|n| self.roots.get(&n)) {
+                Some(root) => (*root, 1),
+                None => return Err(self.unknown(path)),
+            },
+        };
+        let mut leaf = self.root_leaf(&self.image.roots[root]);
+        for part in &parts[used..] {
+            self.step(path, part, &mut leaf)?;
+        }
+        Ok(Found { leaf })
+    }
+
+    fn unknown(&self, path: &str) -> String {
+        let mut best: Option<(usize, &str)> = None;
+        let upper = path.to_ascii_uppercase();
+        for root in self.image.roots.iter().filter(|r| !r.name.contains('$')) {
+            let d = distance(&upper, &root.name.to_ascii_uppercase());
+            if d <= (upper.len() / 4).max(1) && best.is_none_or(|(b, _)| d < b) {
+                best = Some((d, &root.name));
+            }
+        }
+        match best {
+            Some((_, near)) => format!("there is no variable `{path}`; did you mean `{near}`?"),
+            None => format!("there is no variable `{path}`"),
+        }
+    }
+
+    fn step(&self, path: &str, part: &Part, leaf: &mut Leaf) -> Result<(), String> {
+        match (self.image.types.get(leaf.ty as usize), part) {
+            (Some(TypeDesc::Struct { fields, name }), Part::Name(wanted)) => {
+                let Some(field) = fields.iter().find(|f| f.name.eq_ignore_ascii_case(wanted)) else {
+                    return Err(format!("`{path}`: {name} has no `{wanted}`"));
+                };
+                leaf.offset += field.offset;
+                leaf.ty = field.ty;
+                Ok(())
+            }
+            (Some(TypeDesc::Array { dims, elem, stride }), Part::Index(index)) => {
+                if index.len() != dims.len() {
+                    return Err(format!("`{path}`: {} indices for {} dimensions", index.len(), dims.len()));
+                }
+                let mut flat: i64 = 0;
+                for (i, (low, high)) in index.iter().zip(dims) {
+                    if i < low || i > high {
+                        return Err(format!("`{path}`: index {i} is outside {low}..{high}"));
+                    }
+                    flat = flat * (high - low + 1) + (i - low);
+                }
+                leaf.offset += flat as u32 * stride;
+                leaf.ty = *elem;
+                Ok(())
+            }
+            (_, Part::Name(wanted)) => Err(format!("`{path}`: there is no `{wanted}`")),
+            (_, Part::Index(_)) => Err(format!("`{path}` is no array")),
+        }
+    }
+
+    fn expand(&self, name: &str, leaf: &Leaf, out: &mut Vec<(String, Leaf)>) -> Result<(), String> {
+        if out.len() >= MAX_COLUMNS {
+            return Err(format!("`{name}` makes more than {MAX_COLUMNS} columns; watch single elements"));
+        }
+        match self.image.types.get(leaf.ty as usize) {
+            Some(TypeDesc::Struct { fields, .. }) => {
+                for field in fields.iter().filter(|f| !f.name.contains('$')) {
+                    let inner = Leaf { offset: leaf.offset + field.offset, ty: field.ty, ..leaf.clone() };
+                    self.expand(&format!("{name}.{}", field.name), &inner, out)?;
+                }
+            }
+            Some(TypeDesc::Array { dims, elem, stride }) => {
+                let count: i64 = dims.iter().map(|(l, h)| h - l + 1).product();
+                let mut index: Vec<i64> = dims.iter().map(|(l, _)| *l).collect();
+                for n in 0..count {
+                    let text: Vec<String> = index.iter().map(i64::to_string).collect();
+                    let inner = Leaf { offset: leaf.offset + n as u32 * stride, ty: *elem, ..leaf.clone() };
+                    self.expand(&format!("{name}[{}]", text.join(",")), &inner, out)?;
+                    for (i, (low, high)) in index.iter_mut().zip(dims).rev() {
+                        *i += 1;
+                        if *i <= *high {
+                            break;
+                        }
+                        *i = *low;
+                    }
+                }
+            }
+            _ => out.push((name.to_string(), leaf.clone())),
+        }
+        Ok(())
+    }
+
+    /// The value of a leaf as the trace shows it.
+    pub fn text(&self, leaf: &Leaf, mem: &[u8]) -> String {
+        let mut out = String::new();
+        self.write(leaf, mem, &mut out);
+        out
+    }
+
+    /// Appends the value of a leaf as the trace shows it.
+    pub fn write(&self, leaf: &Leaf, mem: &[u8], out: &mut String) {
+        let at = leaf.offset as usize;
+        // Writing to a String does not fail.
+        let _ = match self.image.types.get(leaf.ty as usize) {
+            Some(TypeDesc::Elem(code)) => {
+                let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
+                value::write_scalar(out, elem, read(mem, leaf, elem))
+            }
+            Some(TypeDesc::Enum { elem, values }) => {
+                let elem = Elem::from_code(*elem).unwrap_or(Elem::Int);
+                let number = elem.to_i128(read(mem, leaf, elem));
+                match values.iter().find(|(_, v)| i128::from(*v) == number) {
+                    Some((name, _)) => out.write_str(name),
+                    None => write!(out, "{number}"),
+                }
+            }
+            Some(TypeDesc::String { wide: false, capacity }) => {
+                let text = mem.get(at..at + *capacity as usize).unwrap_or_default();
+                let end = text.iter().position(|b| *b == 0).unwrap_or(text.len());
+                value::write_string(out, &text[..end])
+            }
+            Some(TypeDesc::String { wide: true, capacity }) => {
+                let bytes = mem.get(at..at + 2 * *capacity as usize).unwrap_or_default();
+                let units: Vec<u16> = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
+                let end = units.iter().position(|u| *u == 0).unwrap_or(units.len());
+                value::write_wstring(out, &units[..end])
+            }
+            _ => value::write_scalar(out, Elem::Dword, read(mem, leaf, Elem::Dword)),
+        };
+    }
+
+    /// A literal's text as bytes for a leaf (one byte, 0 or 1, for a bit).
+    pub fn bytes(&self, leaf: &Leaf, text: &str) -> Result<Vec<u8>, String> {
+        let text = text.trim();
+        match self.image.types.get(leaf.ty as usize) {
+            Some(TypeDesc::Elem(code)) => {
+                let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
+                match Kind::Elem(elem).parse(text).map_err(|e| e.to_string())? {
+                    Value::Scalar { raw, .. } => Ok(raw.to_le_bytes()[..elem.bytes() as usize].to_vec()),
+                    _ => Err(format!("`{text}` is no {}", elem.name())),
+                }
+            }
+            Some(TypeDesc::Enum { elem, values }) => {
+                let elem = Elem::from_code(*elem).unwrap_or(Elem::Int);
+                let name = text.rsplit('#').next().unwrap_or(text);
+                match values.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)) {
+                    Some((_, v)) => Ok(v.to_le_bytes()[..elem.bytes() as usize].to_vec()),
+                    None => {
+                        let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
+                        Err(format!("`{text}` is none of {}", names.join(", ")))
+                    }
+                }
+            }
+            Some(TypeDesc::String { wide: false, capacity }) => {
+                let Value::String(mut bytes) = Kind::String.parse(text).map_err(|e| e.to_string())? else {
+                    return Err(format!("`{text}` is no STRING"));
+                };
+                bytes.truncate(*capacity as usize);
+                bytes.push(0);
+                Ok(bytes)
+            }
+            Some(TypeDesc::String { wide: true, capacity }) => {
+                let Value::WString(mut units) = Kind::WString.parse(text).map_err(|e| e.to_string())? else {
+                    return Err(format!("`{text}` is no WSTRING"));
+                };
+                units.truncate(*capacity as usize);
+                units.push(0);
+                Ok(units.iter().flat_map(|u| u.to_le_bytes()).collect())
+            }
+            _ => Err("a reference cannot be set".into()),
+        }
+    }
+}
+
+/// The register value of an elementary variable.
+fn read(mem: &[u8], leaf: &Leaf, elem: Elem) -> u64 {
+    let at = leaf.offset as usize;
+    let mut bytes = [0; 8];
+    let width = elem.bytes() as usize;
+    if let Some(source) = mem.get(at..at + width) {
+        bytes[..width].copy_from_slice(source);
+    }
+    let raw = u64::from_le_bytes(bytes);
+    match (leaf.bit, elem) {
+        (Some(bit), _) => raw >> bit & 1,
+        (None, Elem::Bool) => u64::from(raw != 0),
+        _ => raw,
+    }
+}
+
+/// Writes the bytes of a value; of a bit only that bit.
+pub fn write(mem: &mut [u8], offset: u32, bit: Option<u8>, bytes: &[u8]) {
+    let at = offset as usize;
+    match bit {
+        Some(bit) => {
+            if let (Some(byte), Some(value)) = (mem.get_mut(at), bytes.first()) {
+                *byte = *byte & !(1 << bit) | (value & 1) << bit;
+            }
+        }
+        None => {
+            if let Some(target) = mem.get_mut(at..at + bytes.len()) {
+                target.copy_from_slice(bytes);
+            }
+        }
+    }
+}
+
+/// Edit distance, for suggestions.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut corner = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let cost = corner + usize::from(x != *y);
+            corner = row[j + 1];
+            row[j + 1] = cost.min(row[j] + 1).min(corner + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// `--watch A,B[1,2],C`: commas inside brackets do not split.
+pub fn split_names(text: &str) -> Vec<&str> {
+    let (mut depth, mut start, mut names) = (0i32, 0, Vec::new());
+    for (at, c) in text.char_indices() {
+        match c {
+            '[' => depth += 1,
+            ']' => depth -= 1,
+            ',' if depth <= 0 => {
+                names.push(text[start..at].trim());
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    names.push(text[start..].trim());
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::{Field, Root};
+
+    fn image() -> Image {
+        let int = TypeDesc::Elem(Elem::Int.code());
+        let matrix = TypeDesc::Array { dims: vec![(1, 2), (0, 1)], elem: 0, stride: 2 };
+        let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
+        let block = TypeDesc::Struct { name: "Fb".into(), fields: vec![field("m", 8, 1), field("n", 0, 0)] };
+        let root =
+            |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, constant: false, retain: false };
+        Image {
+            configuration: "Conf".into(),
+            resource: "Res".into(),
+            types: vec![int, matrix, block, TypeDesc::Elem(Elem::Bool.code())],
+            roots: vec![root("P1.fb", 64, 2, None), root("g", 100, 0, None), root("P1.lamp", 90, 3, Some(3))],
+            ..Image::default()
+        }
+    }
+
+    #[test]
+    fn finds_names_in_any_case_and_with_prefixes() {
+        let image = image();
+        let r = Resolver::new(&image);
+        for path in ["P1.fb.m[2,1]", "p1.FB.M[2, 1]", "Res.P1.fb.m[2,1]", "Conf.Res.P1.fb.m[2,1]"] {
+            assert_eq!(r.leaf(path).map(|l| l.offset), Ok(64 + 8 + 6), "{path}");
+        }
+        assert_eq!(r.leaf("Res.g").map(|l| l.offset), Ok(100));
+        assert!(r.leaf("P1.fb.m[3,0]").unwrap_err().contains("outside 1..2"));
+        assert!(r.leaf("P1.lamb").unwrap_err().contains("did you mean `P1.lamp`"));
+        assert!(r.leaf("P1.fb").unwrap_err().contains("aggregate"));
+    }
+
+    #[test]
+    fn aggregates_expand_in_order_of_declaration() {
+        let image = image();
+        let r = Resolver::new(&image);
+        let names = |p| r.columns(p).unwrap().into_iter().map(|c| c.0).collect::<Vec<_>>();
+        assert_eq!(names("p1.fb"), ["p1.fb.m[1,0]", "p1.fb.m[1,1]", "p1.fb.m[2,0]", "p1.fb.m[2,1]", "p1.fb.n"]);
+        assert_eq!(names("P1").len(), 6);
+        assert_eq!(split_names("a[1,2], b ,c"), ["a[1,2]", "b", "c"]);
+    }
+
+    #[test]
+    fn bits_are_read_and_written_alone() {
+        let image = image();
+        let r = Resolver::new(&image);
+        let leaf = r.leaf("P1.lamp").unwrap();
+        let mut mem = vec![0xF0; 128];
+        assert_eq!(r.text(&leaf, &mem), "FALSE");
+        let bytes = r.bytes(&leaf, "TRUE").unwrap();
+        write(&mut mem, leaf.offset, leaf.bit, &bytes);
+        assert_eq!((mem[90], r.text(&leaf, &mem).as_str()), (0xF8, "TRUE"));
+        assert!(r.bytes(&r.leaf("g").unwrap(), "T#5s").is_err());
+        assert_eq!(r.bytes(&r.leaf("g").unwrap(), "INT#-2"), Ok(vec![0xFE, 0xFF]));
+    }
+}

@@ -1,0 +1,87 @@
+//! The scan loop: inputs, execute, outputs.
+
+use crate::clock::{Clock, monotonic_ns};
+use crate::engine::{Engine, Region};
+use crate::image::Image;
+use crate::path::Resolver;
+use crate::stats::Stats;
+use crate::stimulus::Stimulus;
+use crate::task::Schedule;
+use crate::trace::Trace;
+use crate::watchdog::Watchdog;
+use crate::{process_image, signals};
+
+/// Everything a run works on.
+pub struct Scan<'a> {
+    pub image: &'a Image,
+    pub resolver: &'a Resolver<'a>,
+    pub engine: &'a mut dyn Engine,
+    pub mem: &'a mut Region,
+    pub watchdog: &'a Watchdog,
+    pub clock: Clock,
+    pub schedule: Schedule,
+    pub stimulus: Option<Stimulus>,
+    pub trace: Option<Trace>,
+    pub stats: Option<Stats>,
+    /// Cycles to run; `None` is without end.
+    pub cycles: Option<u64>,
+}
+
+/// How a run ended.
+#[derive(Debug, PartialEq, Eq)]
+pub enum End {
+    /// All cycles ran, or somebody asked to stop.
+    Stopped,
+    /// A task faulted: the fault's number, the task, the cycle.
+    Fault(u32, usize, u64),
+    /// The trace cannot be written; empty if only its reader went away.
+    Trace(String),
+}
+
+impl Scan<'_> {
+    /// Runs cycles until one of the ends.
+    pub fn run(&mut self) -> End {
+        let mut cycle: u64 = 1;
+        while self.cycles.is_none_or(|n| cycle <= n) && !signals::stop_requested() {
+            let Some(now) = self.clock.wait(cycle, signals::stop_requested) else { break };
+            if let Some(stimulus) = &mut self.stimulus {
+                stimulus.apply(cycle, self.mem.as_mut_slice());
+            }
+            if let Err((number, task)) = self.execute(now) {
+                process_image::safe_state(self.image, self.mem);
+                return match self.flush() {
+                    Err(e) if !e.is_empty() => End::Trace(e),
+                    _ => End::Fault(number, task, cycle),
+                };
+            }
+            if let Some(trace) = &mut self.trace
+                && let Err(e) = trace.row(cycle, self.resolver, self.mem.as_slice())
+            {
+                return End::Trace(e);
+            }
+            cycle += 1;
+        }
+        match self.flush() {
+            Ok(()) => End::Stopped,
+            Err(e) => End::Trace(e),
+        }
+    }
+
+    fn execute(&mut self, now: i64) -> Result<(), (u32, usize)> {
+        let Scan { schedule, engine, mem, watchdog, stats, image, .. } = self;
+        schedule.release(now, |task| {
+            let before = stats.as_ref().map(|_| monotonic_ns());
+            watchdog.start(image.tasks[task].watchdog_ns);
+            let status = engine.scan(mem, task as u32, now);
+            watchdog.stop();
+            if let (Some(stats), Some(before)) = (stats.as_mut(), before) {
+                stats.record(task, monotonic_ns() - before);
+            }
+            if status == 0 { Ok(()) } else { Err((status, task)) }
+        })
+    }
+
+    fn flush(&mut self) -> Result<(), String> {
+        self.trace.as_mut().map_or(Ok(()), Trace::flush)
+    }
+}

@@ -1,0 +1,100 @@
+//! Trace CSV: one row per executed cycle, values as they are after it (docs/cli.md, "Trace CSV").
+
+use crate::path::{Leaf, Resolver, split_names};
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::Path;
+
+/// What is written where.
+pub struct Trace {
+    columns: Vec<(String, Leaf)>,
+    out: BufWriter<Box<dyn Write>>,
+    line: String,
+    /// One value before it is quoted; both buffers keep their memory.
+    cell: String,
+}
+
+impl std::fmt::Debug for Trace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Trace").field("columns", &self.columns.len()).finish_non_exhaustive()
+    }
+}
+
+/// The columns of `--watch`, or all variables.
+pub fn columns(watch: Option<&str>, resolver: &Resolver) -> Result<Vec<(String, Leaf)>, String> {
+    let Some(watch) = watch else { return resolver.all() };
+    let mut columns = Vec::new();
+    for name in split_names(watch) {
+        if name.is_empty() {
+            return Err("--watch: a name is empty".into());
+        }
+        columns.extend(resolver.columns(name).map_err(|e| format!("--watch: {e}"))?);
+    }
+    Ok(columns)
+}
+
+impl Trace {
+    /// Opens the file (`-` is standard output) and writes the header.
+    pub fn open(path: &Path, columns: Vec<(String, Leaf)>) -> Result<Self, String> {
+        let out: Box<dyn Write> = if path == Path::new("-") {
+            Box::new(std::io::stdout())
+        } else {
+            let file =
+                std::fs::File::create(path).map_err(|e| format!("cannot write trace `{}`: {e}", path.display()))?;
+            Box::new(file)
+        };
+        let mut trace =
+            Self { columns, out: BufWriter::with_capacity(1 << 16, out), line: String::new(), cell: String::new() };
+        trace.line.push_str("cycle");
+        for (name, _) in &trace.columns {
+            trace.line.push(',');
+            field(&mut trace.line, name);
+        }
+        trace.end_line()?;
+        Ok(trace)
+    }
+
+    /// One row.
+    pub fn row(&mut self, cycle: u64, resolver: &Resolver, mem: &[u8]) -> Result<(), String> {
+        use std::fmt::Write as _;
+        let _ = write!(self.line, "{cycle}");
+        for (_, leaf) in &self.columns {
+            self.line.push(',');
+            self.cell.clear();
+            resolver.write(leaf, mem, &mut self.cell);
+            field(&mut self.line, &self.cell);
+        }
+        self.end_line()
+    }
+
+    fn end_line(&mut self) -> Result<(), String> {
+        self.line.push('\n');
+        let done = self.out.write_all(self.line.as_bytes());
+        self.line.clear();
+        tolerate(done)
+    }
+
+    /// What is buffered, at the end or before a fault is told.
+    pub fn flush(&mut self) -> Result<(), String> {
+        tolerate(self.out.flush())
+    }
+}
+
+/// A reader that goes away ends the trace, not the program; [`Trace::row`] then says so.
+fn tolerate(done: std::io::Result<()>) -> Result<(), String> {
+    match done {
+        Ok(()) => Ok(()),
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => Err(String::new()),
+        Err(e) => Err(format!("cannot write the trace: {e}")),
+    }
+}
+
+/// A field as in RFC 4180.
+fn field(line: &mut String, text: &str) {
+    if text.contains([',', '"', '\n', '\r']) {
+        line.push('"');
+        line.push_str(&text.replace('"', "\"\""));
+        line.push('"');
+    } else {
+        line.push_str(text);
+    }
+}

@@ -1,0 +1,784 @@
+//! Random well-typed programs as ST text, from a seed.
+//!
+//! Every name is declared, every operand has the type that strict asks for; what may happen at run time is not avoided but
+//! kept rare: an index may be out of bounds, a divisor 0, a subrange violated. Loops are bounded by construction.
+
+use std::fmt::Write;
+
+/// Scalar types that the generator uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ty {
+    Bool,
+    Int {
+        bits: u32,
+        signed: bool,
+    },
+    Bits(u32),
+    Real,
+    Lreal,
+    Time,
+    /// `Color`
+    Enum,
+    /// `Small`: INT (-5..20)
+    Small,
+}
+
+const TYPES: [Ty; 18] = [
+    Ty::Bool,
+    Ty::Bool,
+    Ty::Int { bits: 8, signed: true },
+    Ty::Int { bits: 16, signed: true },
+    Ty::Int { bits: 16, signed: true },
+    Ty::Int { bits: 32, signed: true },
+    Ty::Int { bits: 64, signed: true },
+    Ty::Int { bits: 8, signed: false },
+    Ty::Int { bits: 16, signed: false },
+    Ty::Int { bits: 32, signed: false },
+    Ty::Int { bits: 64, signed: false },
+    Ty::Bits(8),
+    Ty::Bits(16),
+    Ty::Bits(32),
+    Ty::Real,
+    Ty::Lreal,
+    Ty::Time,
+    Ty::Enum,
+];
+
+impl Ty {
+    fn name(self) -> &'static str {
+        match self {
+            Ty::Bool => "BOOL",
+            Ty::Int { bits: 8, signed: true } => "SINT",
+            Ty::Int { bits: 16, signed: true } => "INT",
+            Ty::Int { bits: 32, signed: true } => "DINT",
+            Ty::Int { signed: true, .. } => "LINT",
+            Ty::Int { bits: 8, .. } => "USINT",
+            Ty::Int { bits: 16, .. } => "UINT",
+            Ty::Int { bits: 32, .. } => "UDINT",
+            Ty::Int { .. } => "ULINT",
+            Ty::Bits(8) => "BYTE",
+            Ty::Bits(16) => "WORD",
+            Ty::Bits(32) => "DWORD",
+            Ty::Bits(_) => "LWORD",
+            Ty::Real => "REAL",
+            Ty::Lreal => "LREAL",
+            Ty::Time => "TIME",
+            Ty::Enum => "Color",
+            Ty::Small => "Small",
+        }
+    }
+}
+
+/// A variable that can be read and perhaps written.
+#[derive(Debug, Clone)]
+struct Var {
+    /// As written: `x`, `a[2]`, `s.f`.
+    text: String,
+    ty: Ty,
+    write: bool,
+}
+
+/// A function that earlier text declared.
+#[derive(Debug, Clone)]
+struct Function {
+    name: String,
+    params: Vec<Ty>,
+    result: Ty,
+    /// Has a VAR_IN_OUT of type DINT.
+    in_out: bool,
+    /// Has a VAR_OUTPUT of type INT.
+    output: bool,
+}
+
+/// A function block that earlier text declared.
+#[derive(Debug, Clone)]
+struct Block {
+    name: String,
+    inputs: Vec<(String, Ty)>,
+    outputs: Vec<(String, Ty)>,
+    action: bool,
+}
+
+pub struct Generator {
+    rng: fastrand::Rng,
+    out: String,
+    /// Prefix of all names of this program, so that several fit into one source.
+    prefix: String,
+    functions: Vec<Function>,
+    blocks: Vec<Block>,
+    vars: Vec<Var>,
+    instances: Vec<(String, Block)>,
+    arrays: Vec<(String, i64, i64, Ty)>,
+    loops: u32,
+    loop_vars: Vec<String>,
+    free_loop_vars: Vec<String>,
+    indent: usize,
+    /// Whether faults are to be possible.
+    faults: bool,
+}
+
+/// One program named `{prefix}Main` with its functions and blocks.
+pub fn program(seed: u64, prefix: &str, faults: bool) -> String {
+    let mut g = Generator {
+        rng: fastrand::Rng::with_seed(seed),
+        out: String::new(),
+        prefix: prefix.to_string(),
+        functions: Vec::new(),
+        blocks: Vec::new(),
+        vars: Vec::new(),
+        instances: Vec::new(),
+        arrays: Vec::new(),
+        loops: 0,
+        loop_vars: Vec::new(),
+        free_loop_vars: Vec::new(),
+        indent: 1,
+        faults,
+    };
+    for n in 0..g.rng.usize(0..4) {
+        g.function(n);
+    }
+    for n in 0..g.rng.usize(0..3) {
+        g.block(n);
+    }
+    g.main();
+    g.out
+}
+
+/// Declarations that all programs of a source share.
+pub const SHARED: &str = "\
+TYPE
+  Color : (Red, Green := 5, Blue);
+  Small : INT (-5..20);
+  Pair : STRUCT a : INT := 3; b : DINT; c : BOOL; r : REAL := 0.5; END_STRUCT;
+END_TYPE
+";
+
+impl Generator {
+    fn chance(&mut self, percent: u32) -> bool {
+        self.rng.u32(0..100) < percent
+    }
+
+    fn pick_type(&mut self) -> Ty {
+        TYPES[self.rng.usize(0..TYPES.len())]
+    }
+
+    fn line(&mut self, text: &str) {
+        let _ = writeln!(self.out, "{:width$}{text}", "", width = self.indent * 2);
+    }
+
+    /// Starts the scope of a POU: its own variables only.
+    fn scope(&mut self) {
+        self.vars.clear();
+        self.instances.clear();
+        self.arrays.clear();
+        self.loop_vars.clear();
+        self.free_loop_vars.clear();
+    }
+
+    fn declare(&mut self, section: &str, names: &str, count: usize, write: bool) -> Vec<(String, Ty)> {
+        let mut made = Vec::new();
+        if count == 0 {
+            return made;
+        }
+        self.line(section);
+        for n in 0..count {
+            let ty = if write && self.chance(6) { Ty::Small } else { self.pick_type() };
+            let name = format!("{names}{n}");
+            let init = if self.chance(40) { format!(" := {}", self.literal(ty)) } else { String::new() };
+            self.line(&format!("  {name} : {}{init};", ty.name()));
+            self.vars.push(Var { text: name.clone(), ty, write });
+            made.push((name, ty));
+        }
+        self.line("END_VAR");
+        made
+    }
+
+    /// Locals of every POU: scalars, arrays, a structure, loop counters.
+    fn locals(&mut self, blocks: bool) {
+        let count = self.rng.usize(2..7);
+        self.declare("VAR", "v", count, true);
+        self.line("VAR");
+        for n in 0..self.rng.usize(0..3) {
+            let ty = self.pick_type();
+            let low = self.rng.i64(-3..3);
+            let high = low + self.rng.i64(1..6);
+            let values: Vec<String> = (0..3).map(|_| self.literal(ty)).collect();
+            let init = match self.rng.u32(0..3) {
+                0 => format!(" := [{}, 2({})]", values[0], values[1]),
+                1 => format!(" := [{}]", values[2]),
+                _ => String::new(),
+            };
+            let fits = high - low + 1 >= 3;
+            let init = if fits { init } else { String::new() };
+            self.line(&format!("  arr{n} : ARRAY [{low}..{high}] OF {}{init};", ty.name()));
+            self.arrays.push((format!("arr{n}"), low, high, ty));
+        }
+        if self.chance(30) {
+            self.line("  mat : ARRAY [0..2, 1..4] OF DINT;");
+            for text in ["mat[1, 2]", "mat[0, 4]", "mat[2, 1]"] {
+                self.vars.push(Var { text: text.into(), ty: Ty::Int { bits: 32, signed: true }, write: true });
+            }
+        }
+        if self.chance(50) {
+            self.line("  s : Pair; t : Pair := (a := 7, c := TRUE);");
+            for s in ["s", "t"] {
+                for (f, ty) in [
+                    ("a", Ty::Int { bits: 16, signed: true }),
+                    ("b", Ty::Int { bits: 32, signed: true }),
+                    ("c", Ty::Bool),
+                    ("r", Ty::Real),
+                ] {
+                    self.vars.push(Var { text: format!("{s}.{f}"), ty, write: true });
+                }
+            }
+        }
+        for n in 0..3 {
+            self.line(&format!("  i{n} : INT;"));
+            self.vars.push(Var { text: format!("i{n}"), ty: Ty::Int { bits: 16, signed: true }, write: false });
+            self.free_loop_vars.push(format!("i{n}"));
+        }
+        if blocks {
+            for n in 0..self.rng.usize(0..3) {
+                if self.blocks.is_empty() {
+                    break;
+                }
+                let block = self.blocks[self.rng.usize(0..self.blocks.len())].clone();
+                let name = format!("fb{n}");
+                self.line(&format!("  {name} : {};", block.name));
+                self.instance(name, block);
+            }
+            for n in 0..self.rng.usize(0..3) {
+                let block = standard_block(self.rng.usize(0..STANDARD));
+                let name = format!("std{n}");
+                self.line(&format!("  {name} : {};", block.name));
+                self.instance(name, block);
+            }
+        }
+        self.line("END_VAR");
+    }
+
+    fn instance(&mut self, name: String, block: Block) {
+        for (output, ty) in &block.outputs {
+            self.vars.push(Var { text: format!("{name}.{output}"), ty: *ty, write: false });
+        }
+        self.instances.push((name, block));
+    }
+
+    fn function(&mut self, n: usize) {
+        self.scope();
+        let name = format!("{}Fn{n}", self.prefix);
+        let result = self.pick_type();
+        self.indent = 0;
+        self.line(&format!("FUNCTION {name} : {}", result.name()));
+        self.indent = 1;
+        let count = self.rng.usize(1..4);
+        let params = self.declare("VAR_INPUT", "p", count, false).into_iter().map(|(_, ty)| ty).collect();
+        let in_out = self.chance(30);
+        let output = self.chance(30);
+        if in_out {
+            self.line("VAR_IN_OUT io : DINT; END_VAR");
+            self.vars.push(Var { text: "io".into(), ty: Ty::Int { bits: 32, signed: true }, write: true });
+        }
+        if output {
+            self.line("VAR_OUTPUT o : INT := 4; END_VAR");
+            self.vars.push(Var { text: "o".into(), ty: Ty::Int { bits: 16, signed: true }, write: true });
+        }
+        self.locals(false);
+        self.statements(3);
+        let value = self.expr(result, 2);
+        self.line(&format!("{name} := {value};"));
+        self.indent = 0;
+        self.line("END_FUNCTION");
+        self.functions.push(Function { name, params, result, in_out, output });
+    }
+
+    fn block(&mut self, n: usize) {
+        self.scope();
+        let name = format!("{}Fb{n}", self.prefix);
+        self.indent = 0;
+        self.line(&format!("FUNCTION_BLOCK {name}"));
+        self.indent = 1;
+        let inputs = self.rng.usize(1..4);
+        let inputs = self.declare("VAR_INPUT", "p", inputs, false);
+        let outputs = self.rng.usize(1..4);
+        let outputs = self.declare("VAR_OUTPUT", "q", outputs, true);
+        let outputs: Vec<(String, Ty)> = outputs.into_iter().collect();
+        if self.chance(30) {
+            self.line("VAR_TEMP tmp : DINT; END_VAR");
+            self.vars.push(Var { text: "tmp".into(), ty: Ty::Int { bits: 32, signed: true }, write: true });
+        }
+        self.locals(true);
+        self.statements(4);
+        let action = self.chance(30);
+        if action {
+            self.line("ACTION act :");
+            self.statements(2);
+            self.line("END_ACTION");
+        }
+        self.indent = 0;
+        self.line("END_FUNCTION_BLOCK");
+        self.blocks.push(Block { name, inputs, outputs, action });
+    }
+
+    fn main(&mut self) {
+        self.scope();
+        self.indent = 0;
+        let name = format!("{}Main", self.prefix);
+        self.line(&format!("PROGRAM {name}"));
+        self.indent = 1;
+        self.locals(true);
+        self.line("VAR cycle : DINT; END_VAR");
+        self.vars.push(Var { text: "cycle".into(), ty: Ty::Int { bits: 32, signed: true }, write: false });
+        self.line("cycle := cycle + 1;");
+        self.statements(6);
+        self.indent = 0;
+        self.line("END_PROGRAM");
+    }
+
+    fn statements(&mut self, depth: u32) {
+        for _ in 0..self.rng.u32(1..5) {
+            self.statement(depth);
+        }
+    }
+
+    fn writable(&mut self) -> Option<Var> {
+        let list: Vec<Var> = self.vars.iter().filter(|v| v.write).cloned().collect();
+        if list.is_empty() { None } else { Some(list[self.rng.usize(0..list.len())].clone()) }
+    }
+
+    fn statement(&mut self, depth: u32) {
+        let kind = if depth == 0 { self.rng.u32(0..50) } else { self.rng.u32(0..100) };
+        match kind {
+            0..=29 => self.assign(),
+            30..=39 => self.array_assign(),
+            40..=49 => self.call_block(),
+            50..=64 => {
+                let cond = self.expr(Ty::Bool, 3);
+                self.line(&format!("IF {cond} THEN"));
+                self.nested(depth);
+                if self.chance(40) {
+                    let cond = self.expr(Ty::Bool, 2);
+                    self.line(&format!("ELSIF {cond} THEN"));
+                    self.nested(depth);
+                }
+                if self.chance(50) {
+                    self.line("ELSE");
+                    self.nested(depth);
+                }
+                self.line("END_IF;");
+            }
+            65..=74 => self.case(depth),
+            75..=86 => self.for_loop(depth),
+            87..=92 if self.loops < 2 => self.while_loop(depth),
+            93..=95 if self.loops > 0 => {
+                let cond = self.expr(Ty::Bool, 2);
+                let word = if self.chance(50) { "EXIT" } else { "CONTINUE" };
+                self.line(&format!("IF {cond} THEN {word}; END_IF;"));
+            }
+            96 if self.loops == 0 => {
+                let cond = self.expr(Ty::Bool, 2);
+                self.line(&format!("IF {cond} THEN RETURN; END_IF;"));
+            }
+            _ => self.assign(),
+        }
+    }
+
+    fn nested(&mut self, depth: u32) {
+        self.indent += 1;
+        self.statements(depth - 1);
+        self.indent -= 1;
+    }
+
+    fn assign(&mut self) {
+        if self.vars.iter().any(|v| v.text == "s.a") && self.chance(8) {
+            let text = if self.rng.bool() { "s := t;" } else { "t := s;" };
+            self.line(text);
+            return;
+        }
+        let Some(var) = self.writable() else { return };
+        if let (Ty::Bits(bits), true) = (var.ty, self.chance(20)) {
+            let value = self.expr(Ty::Bool, 2);
+            let bit = self.rng.u32(0..bits);
+            self.line(&format!("{}.{bit} := {value};", var.text));
+            return;
+        }
+        let value = self.expr(var.ty, 4);
+        self.line(&format!("{} := {value};", var.text));
+    }
+
+    fn index(&mut self, low: i64, high: i64) -> String {
+        match self.rng.u32(0..10) {
+            0..=4 => self.rng.i64(low..=high).to_string(),
+            5..=7 => {
+                let value = self.expr(Ty::Int { bits: 16, signed: true }, 1);
+                format!("LIMIT({low}, {value}, {high})")
+            }
+            // Sometimes outside.
+            _ if self.faults => format!("i{}", self.rng.u32(0..3)),
+            _ => self.rng.i64(low..=high).to_string(),
+        }
+    }
+
+    fn array_assign(&mut self) {
+        if self.arrays.is_empty() {
+            return self.assign();
+        }
+        let (name, low, high, ty) = self.arrays[self.rng.usize(0..self.arrays.len())].clone();
+        let index = self.index(low, high);
+        let value = self.expr(ty, 3);
+        self.line(&format!("{name}[{index}] := {value};"));
+    }
+
+    fn call_block(&mut self) {
+        if self.instances.is_empty() {
+            return self.assign();
+        }
+        let (name, block) = self.instances[self.rng.usize(0..self.instances.len())].clone();
+        if block.action && self.chance(30) {
+            self.line(&format!("{name}.act();"));
+            return;
+        }
+        let mut args = Vec::new();
+        for (input, ty) in &block.inputs {
+            if self.chance(80) {
+                args.push(format!("{input} := {}", self.expr(*ty, 2)));
+            }
+        }
+        for (output, ty) in &block.outputs {
+            let targets: Vec<String> =
+                self.vars.iter().filter(|v| v.write && v.ty == *ty).map(|v| v.text.clone()).collect();
+            if !targets.is_empty() && self.chance(25) {
+                let not = if *ty == Ty::Bool && self.chance(30) { "NOT " } else { "" };
+                args.push(format!("{not}{output} => {}", targets[self.rng.usize(0..targets.len())]));
+            }
+        }
+        self.line(&format!("{name}({});", args.join(", ")));
+    }
+
+    fn case(&mut self, depth: u32) {
+        if self.chance(25) {
+            let value = self.expr(Ty::Enum, 1);
+            self.line(&format!("CASE {value} OF"));
+            for label in ["Red", "Green, Blue"] {
+                self.line(&format!("{label}:"));
+                self.nested(depth);
+            }
+            self.line("END_CASE;");
+            return;
+        }
+        let value = self.expr(Ty::Int { bits: 16, signed: true }, 2);
+        self.line(&format!("CASE {value} OF"));
+        let mut next = self.rng.i64(-4..2);
+        for _ in 0..self.rng.u32(1..6) {
+            let label = if self.chance(30) {
+                let high = next + self.rng.i64(1..20);
+                let text = format!("{next}..{high}");
+                next = high;
+                text
+            } else {
+                next.to_string()
+            };
+            next += self.rng.i64(1..4);
+            self.line(&format!("{label}:"));
+            self.nested(depth);
+        }
+        if self.chance(60) {
+            self.line("ELSE");
+            self.nested(depth);
+        }
+        self.line("END_CASE;");
+    }
+
+    fn for_loop(&mut self, depth: u32) {
+        let Some(var) = self.free_loop_vars.pop() else { return self.assign() };
+        let from = self.rng.i64(-4..5);
+        let to = from + self.rng.i64(-4..7);
+        let by = match self.rng.u32(0..5) {
+            0 => " BY 2".to_string(),
+            1 => " BY -1".to_string(),
+            2 if self.faults && self.chance(20) => format!(" BY i{}", self.rng.u32(0..3)),
+            _ => String::new(),
+        };
+        self.line(&format!("FOR {var} := {from} TO {to}{by} DO"));
+        self.loop_vars.push(var.clone());
+        self.loops += 1;
+        self.nested(depth);
+        self.loops -= 1;
+        self.loop_vars.pop();
+        self.line("END_FOR;");
+        self.free_loop_vars.push(var);
+    }
+
+    fn while_loop(&mut self, depth: u32) {
+        let Some(var) = self.free_loop_vars.pop() else { return self.assign() };
+        let count = self.rng.u32(1..6);
+        self.line(&format!("{var} := 0;"));
+        self.loops += 1;
+        if self.rng.bool() {
+            let cond = self.expr(Ty::Bool, 2);
+            self.line(&format!("WHILE {var} < {count} AND ({cond}) DO"));
+            self.line(&format!("  {var} := {var} + 1;"));
+            self.nested(depth);
+            self.line("END_WHILE;");
+        } else {
+            let cond = self.expr(Ty::Bool, 2);
+            self.line("REPEAT");
+            self.line(&format!("  {var} := {var} + 1;"));
+            self.nested(depth);
+            self.line(&format!("UNTIL {var} >= {count} OR ({cond}) END_REPEAT;"));
+        }
+        self.loops -= 1;
+        self.free_loop_vars.push(var);
+    }
+
+    fn literal(&mut self, ty: Ty) -> String {
+        match ty {
+            Ty::Bool => if self.rng.bool() { "TRUE" } else { "FALSE" }.into(),
+            Ty::Int { bits, signed } => {
+                let max = if signed { (1i128 << (bits - 1)) - 1 } else { (1i128 << bits) - 1 };
+                let min = if signed { -(1i128 << (bits - 1)) } else { 0 };
+                let value = match self.rng.u32(0..8) {
+                    0 => max,
+                    1 => min,
+                    2 => max - 1,
+                    3 if signed => -1,
+                    _ => i128::from(self.rng.i64(0..100)),
+                };
+                format!("{}#{value}", ty.name())
+            }
+            Ty::Bits(bits) => {
+                let mask = if bits == 64 { u64::MAX } else { (1 << bits) - 1 };
+                format!("{}#16#{:X}", ty.name(), self.rng.u64(..) & mask)
+            }
+            Ty::Real | Ty::Lreal => {
+                let value = match self.rng.u32(0..8) {
+                    0 => "1.0e30".to_string(),
+                    1 => "1.0e-30".to_string(),
+                    2 => "0.0".to_string(),
+                    3 => format!("-{}.5", self.rng.u32(0..1000)),
+                    _ => format!("{}.{}", self.rng.u32(0..100), self.rng.u32(0..100)),
+                };
+                format!("{}#{value}", ty.name())
+            }
+            Ty::Time => format!("T#{}ms", self.rng.u32(0..200)),
+            Ty::Enum => ["Red", "Color#Green", "Blue"][self.rng.usize(0..3)].into(),
+            Ty::Small => self.rng.i64(-5..=20).to_string(),
+        }
+    }
+
+    /// A variable of exactly this type.
+    fn variable(&mut self, ty: Ty) -> Option<String> {
+        let list: Vec<String> = self.vars.iter().filter(|v| v.ty == ty).map(|v| v.text.clone()).collect();
+        let array: Vec<_> = self.arrays.iter().filter(|a| a.3 == ty).cloned().collect();
+        if !array.is_empty() && self.chance(30) {
+            let (name, low, high, _) = array[self.rng.usize(0..array.len())].clone();
+            let index = self.index(low, high);
+            return Some(format!("{name}[{index}]"));
+        }
+        if list.is_empty() { None } else { Some(list[self.rng.usize(0..list.len())].clone()) }
+    }
+
+    fn leaf(&mut self, ty: Ty) -> String {
+        let plain = if ty == Ty::Small { Ty::Int { bits: 16, signed: true } } else { ty };
+        if self.chance(75)
+            && let Some(text) = self.variable(plain)
+        {
+            return if ty == Ty::Small { format!("LIMIT(-5, {text}, 20)") } else { text };
+        }
+        self.literal(ty)
+    }
+
+    /// An expression of a type.
+    pub fn expr(&mut self, ty: Ty, depth: u32) -> String {
+        if depth == 0 || self.chance(15) {
+            return self.leaf(ty);
+        }
+        if self.chance(12)
+            && let Some(text) = self.call_function(ty, depth)
+        {
+            return text;
+        }
+        let d = depth - 1;
+        match ty {
+            Ty::Bool => self.bool_expr(d),
+            Ty::Int { .. } => self.int_expr(ty, d),
+            Ty::Bits(bits) => self.bits_expr(ty, bits, d),
+            Ty::Real | Ty::Lreal => self.real_expr(ty, d),
+            Ty::Time => match self.rng.u32(0..6) {
+                0 => format!("({} + {})", self.expr(ty, d), self.expr(ty, d)),
+                1 => format!("({} - {})", self.expr(ty, d), self.expr(ty, d)),
+                2 => format!("({} * {})", self.expr(ty, d), self.expr(Ty::Int { bits: 16, signed: true }, d)),
+                3 => format!("({} / INT#3)", self.expr(ty, d)),
+                4 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.expr(ty, d), self.expr(ty, d)),
+                _ => format!("DINT_TO_TIME({})", self.expr(Ty::Int { bits: 32, signed: true }, d)),
+            },
+            Ty::Enum => match self.rng.u32(0..3) {
+                0 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.leaf(ty), self.leaf(ty)),
+                _ => self.leaf(ty),
+            },
+            Ty::Small => {
+                let value = self.expr(Ty::Int { bits: 16, signed: true }, d);
+                if self.faults && self.chance(20) {
+                    format!("i{}", self.rng.u32(0..3))
+                } else {
+                    format!("LIMIT(-5, {value}, 20)")
+                }
+            }
+        }
+    }
+
+    fn bool_expr(&mut self, d: u32) -> String {
+        match self.rng.u32(0..10) {
+            0 => format!("(NOT {})", self.expr(Ty::Bool, d)),
+            1..=3 => {
+                let op = ["AND", "OR", "XOR", "AND_THEN", "OR_ELSE", "&"][self.rng.usize(0..6)];
+                format!("({} {op} {})", self.expr(Ty::Bool, d), self.expr(Ty::Bool, d))
+            }
+            4..=7 => {
+                let ty = loop {
+                    let ty = self.pick_type();
+                    if matches!(ty, Ty::Int { .. } | Ty::Real | Ty::Lreal | Ty::Time) {
+                        break ty;
+                    }
+                };
+                let op = ["<", ">", "<=", ">=", "=", "<>"][self.rng.usize(0..6)];
+                format!("({} {op} {})", self.expr(ty, d), self.expr(ty, d))
+            }
+            8 => {
+                let bits = [8, 16, 32][self.rng.usize(0..3)];
+                match self.variable(Ty::Bits(bits)) {
+                    Some(text) => format!("{text}.{}", self.rng.u32(0..bits)),
+                    None => self.leaf(Ty::Bool),
+                }
+            }
+            _ => {
+                let op = ["=", "<>"][self.rng.usize(0..2)];
+                format!("({} {op} {})", self.expr(Ty::Enum, d), self.expr(Ty::Enum, d))
+            }
+        }
+    }
+
+    fn int_expr(&mut self, ty: Ty, d: u32) -> String {
+        let name = ty.name();
+        match self.rng.u32(0..16) {
+            0..=4 => {
+                let op = ["+", "-", "*"][self.rng.usize(0..3)];
+                format!("({} {op} {})", self.expr(ty, d), self.expr(ty, d))
+            }
+            5 | 6 => {
+                let op = ["/", "MOD"][self.rng.usize(0..2)];
+                let variable = if self.faults && self.chance(10) { self.variable(ty) } else { None };
+                let divisor = if let Some(text) = variable { text } else { format!("{name}#{}", self.rng.u32(1..9)) };
+                format!("({} {op} {divisor})", self.expr(ty, d))
+            }
+            7 => match ty {
+                Ty::Int { signed: true, .. } => format!("(-{})", self.expr(ty, d)),
+                _ => self.leaf(ty),
+            },
+            8 => format!("ABS({})", self.expr(ty, d)),
+            9 => format!("MIN({}, {})", self.expr(ty, d), self.expr(ty, d)),
+            10 => format!("MAX({}, {}, {})", self.expr(ty, d), self.expr(ty, d), self.leaf(ty)),
+            11 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.expr(ty, d), self.expr(ty, d)),
+            12 => {
+                let k = self.expr(Ty::Int { bits: 16, signed: true }, 1);
+                format!("MUX({k}, {}, {}, {})", self.expr(ty, d), self.leaf(ty), self.leaf(ty))
+            }
+            _ => {
+                let from = loop {
+                    let from = self.pick_type();
+                    if from != ty && !matches!(from, Ty::Enum) {
+                        break from;
+                    }
+                };
+                format!("{}_TO_{name}({})", from.name(), self.expr(from, d))
+            }
+        }
+    }
+
+    fn bits_expr(&mut self, ty: Ty, bits: u32, d: u32) -> String {
+        match self.rng.u32(0..8) {
+            0..=2 => {
+                let op = ["AND", "OR", "XOR"][self.rng.usize(0..3)];
+                format!("({} {op} {})", self.expr(ty, d), self.expr(ty, d))
+            }
+            3 => format!("(NOT {})", self.expr(ty, d)),
+            4 | 5 => {
+                let op = ["SHL", "SHR", "ROL", "ROR"][self.rng.usize(0..4)];
+                let count = if self.faults && self.chance(10) {
+                    format!("i{}", self.rng.u32(0..3))
+                } else {
+                    self.rng.u32(0..bits + 3).to_string()
+                };
+                format!("{op}({}, {count})", self.expr(ty, d))
+            }
+            _ => {
+                let from = Ty::Int { bits: [8, 16, 32][self.rng.usize(0..3)], signed: self.rng.bool() };
+                format!("{}_TO_{}({})", from.name(), ty.name(), self.expr(from, d))
+            }
+        }
+    }
+
+    fn real_expr(&mut self, ty: Ty, d: u32) -> String {
+        match self.rng.u32(0..10) {
+            0..=4 => {
+                let op = ["+", "-", "*", "/"][self.rng.usize(0..4)];
+                format!("({} {op} {})", self.expr(ty, d), self.expr(ty, d))
+            }
+            5 => format!("(-{})", self.expr(ty, d)),
+            6 => {
+                let f = ["ABS", "SQRT", "SIN", "COS", "EXP", "LN", "ATAN"][self.rng.usize(0..7)];
+                format!("{f}({})", self.expr(ty, d))
+            }
+            7 => format!("LIMIT({}, {}, {})", self.literal(ty), self.expr(ty, d), self.literal(ty)),
+            _ => {
+                let from = Ty::Int { bits: [8, 16, 32, 64][self.rng.usize(0..4)], signed: self.rng.bool() };
+                format!("{}_TO_{}({})", from.name(), ty.name(), self.expr(from, d))
+            }
+        }
+    }
+
+    fn call_function(&mut self, ty: Ty, depth: u32) -> Option<String> {
+        let fitting: Vec<Function> = self.functions.iter().filter(|f| f.result == ty).cloned().collect();
+        if fitting.is_empty() {
+            return None;
+        }
+        let f = fitting[self.rng.usize(0..fitting.len())].clone();
+        let mut args: Vec<String> =
+            f.params.iter().enumerate().map(|(n, ty)| format!("p{n} := {}", self.expr(*ty, depth - 1))).collect();
+        if self.chance(20) {
+            args.pop();
+        }
+        if f.in_out {
+            let dint = Ty::Int { bits: 32, signed: true };
+            let var = self.vars.iter().find(|v| v.write && v.ty == dint)?.text.clone();
+            args.push(format!("io := {var}"));
+        }
+        if f.output {
+            let int = Ty::Int { bits: 16, signed: true };
+            if let Some(var) = self.vars.iter().find(|v| v.write && v.ty == int) {
+                args.push(format!("o => {}", var.text));
+            }
+        }
+        Some(format!("{}({})", f.name, args.join(", ")))
+    }
+}
+
+const STANDARD: usize = 8;
+
+fn standard_block(n: usize) -> Block {
+    let bool = Ty::Bool;
+    let int = Ty::Int { bits: 16, signed: true };
+    let names = |list: &[(&str, Ty)]| list.iter().map(|(n, t)| (n.to_string(), *t)).collect();
+    type Parameters = Vec<(String, Ty)>;
+    let (name, inputs, outputs): (&str, Parameters, Parameters) = match n {
+        0 => ("TON", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
+        1 => ("TOF", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
+        2 => ("TP", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
+        3 => ("CTU", names(&[("CU", bool), ("R", bool), ("PV", int)]), names(&[("Q", bool), ("CV", int)])),
+        4 => ("CTD", names(&[("CD", bool), ("LD", bool), ("PV", int)]), names(&[("Q", bool), ("CV", int)])),
+        5 => ("R_TRIG", names(&[("CLK", bool)]), names(&[("Q", bool)])),
+        6 => ("F_TRIG", names(&[("CLK", bool)]), names(&[("Q", bool)])),
+        _ => ("SR", names(&[("S1", bool), ("R", bool)]), names(&[("Q1", bool)])),
+    };
+    Block { name: name.into(), inputs, outputs, action: false }
+}
