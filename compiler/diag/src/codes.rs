@@ -763,6 +763,15 @@ CASE t OF\n\
 END_CASE;\n\
 END_PROGRAM\n\
 ```\n";
+    TEXTBOOK_PIN "H0350" Hint "a pin has another name in the standard" "\
+SR has the pins S1, R, Q1 and RS has S, R1, Q1: the 1 marks the dominant input. Textbooks write S, R and Q; plcc takes them too.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR latch : SR; b : BOOL; END_VAR\n\
+latch(S := b, R := FALSE);\n\
+END_PROGRAM\n\
+```\n";
     // ---- E05xx: configuration and project ----
     SEVERAL_CONFIGURATIONS "E0501" Error "there are several CONFIGURATIONs" "\
 A project has one.\n\

@@ -52,6 +52,7 @@ pub fn body(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) 
 
 /// Constructs with an END word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::enum_variant_names)] // FUNCTION_BLOCK is the standard's word
 enum Block {
     Program,
     Function,

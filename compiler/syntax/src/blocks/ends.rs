@@ -108,6 +108,9 @@ impl Blocks<'_, '_> {
             Block::Struct | Block::Union if !matches!(next, Tok::Semi | Tok::Assign) => {
                 self.emit(Token::inserted(Tok::Semi, end));
             }
+            // Their `;` is part of the grammar.
+            Block::Struct | Block::Union => {}
+            _ if block.is_statement() => {}
             _ if next == Tok::Semi => self.at += 1,
             _ => {}
         }
@@ -208,7 +211,7 @@ impl Blocks<'_, '_> {
     pub(super) fn split_end(&mut self) -> bool {
         let t = self.peek(0);
         let text = t.text(self.text);
-        if text.len() < 3 || !text[..3].eq_ignore_ascii_case("END") {
+        if !text.get(..3).is_some_and(|t| t.eq_ignore_ascii_case("END")) {
             return false;
         }
         let (length, block) = if text.len() == 3 {
