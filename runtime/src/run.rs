@@ -49,7 +49,7 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     let mut mem = Region::new(image.region_bytes as usize);
     engine.init(&mut mem, true);
     // SAFETY: `mem` lives to the end of this function, behind the watchdog's drop: it is declared before.
-    let watchdog = unsafe { Watchdog::new(mem.as_mut_ptr()) }
+    let mut watchdog = unsafe { Watchdog::new(mem.as_mut_ptr(), &image.tasks) }
         .map_err(|e| (3, format!("cannot start the watchdog thread: {e}")))?;
     let interval_ns = flags.interval.unwrap_or_else(|| base_tick(&image.tasks));
     let mut scan = Scan {
@@ -57,7 +57,7 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
         resolver: &resolver,
         engine,
         mem: &mut mem,
-        watchdog: &watchdog,
+        watchdog: &mut watchdog,
         clock: Clock::new(flags.virtual_time, interval_ns),
         schedule: Schedule::new(&image.tasks),
         stimulus,
@@ -67,7 +67,7 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     };
     let end = scan.run();
     if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
-        eprint!("{}", stats.report(&image.tasks, scan.clock.overruns(), format == "json"));
+        eprint!("{}", stats.report(&image.tasks, scan.schedule.overruns(), format == "json"));
     }
     match end {
         End::Stopped => Ok(0),
