@@ -1,5 +1,6 @@
 //! When tasks run (semantics.md \[C1\] \[C2\]).
 
+use crate::clock::Tick;
 use crate::image::Task;
 
 /// The base tick when no task has an interval.
@@ -12,8 +13,7 @@ pub struct Schedule {
     order: Vec<usize>,
     intervals: Vec<Option<i64>>,
     due: Vec<i64>,
-    /// Releases of each task that no tick came in time for.
-    skipped: Vec<u64>,
+    overruns: Vec<u64>,
 }
 
 /// The base tick: the greatest common divisor of the intervals.
@@ -35,29 +35,34 @@ impl Schedule {
         order.sort_by_key(|n| (tasks[*n].name.is_empty(), tasks[*n].priority, *n));
         Self {
             order,
-            intervals: tasks.iter().map(|t| t.interval_ns).collect(),
+            intervals: tasks.iter().map(|t| t.interval_ns.filter(|ns| *ns > 0)).collect(),
             due: vec![0; tasks.len()],
-            skipped: vec![0; tasks.len()],
+            overruns: vec![0; tasks.len()],
         }
     }
 
-    /// Releases of a task that were left out; `None` for a task without an interval.
-    pub fn skipped(&self, task: usize) -> Option<u64> {
-        self.intervals.get(task)?.map(|_| self.skipped[task])
+    /// Releases of each task that started late or not at all because cycles took too long.
+    pub fn overruns(&self) -> &[u64] {
+        &self.overruns
     }
 
-    /// Calls `run` for each task that is due at `now`, in order; stops at the first error.
-    pub fn release<E>(&mut self, now: i64, mut run: impl FnMut(usize) -> Result<(), E>) -> Result<(), E> {
+    /// Calls `run` for each task that is due in a tick, in order; stops at the first error.
+    pub fn release<E>(&mut self, tick: Tick, mut run: impl FnMut(usize) -> Result<(), E>) -> Result<(), E> {
         for n in &self.order {
             let n = *n;
+            let now = tick.now_ns;
+            let mut releases = tick.late;
             if let Some(interval) = self.intervals[n] {
                 if now < self.due[n] {
                     continue;
                 }
                 // The next due time behind now; releases that a long tick skipped are not made up for.
                 let behind = (now - self.due[n]) / interval;
-                self.due[n] += (behind + 1) * interval;
-                self.skipped[n] += behind as u64;
+                self.due[n] = self.due[n].saturating_add((behind + 1).saturating_mul(interval));
+                releases = behind as u64 + 1;
+            }
+            if tick.late > 0 {
+                self.overruns[n] += releases;
             }
             run(n)?;
         }
@@ -78,7 +83,7 @@ mod tests {
         (0..ticks)
             .map(|n| {
                 let mut list = Vec::new();
-                let _: Result<(), ()> = schedule.release(n * tick_ms * 1_000_000, |t| {
+                let _: Result<(), ()> = schedule.release(Tick { now_ns: n * tick_ms * 1_000_000, late: 0 }, |t| {
                     list.push(tasks[t].name.clone());
                     Ok(())
                 });
@@ -104,16 +109,17 @@ mod tests {
     }
 
     #[test]
-    fn releases_behind_a_long_tick_are_counted_not_made_up_for() {
-        let mut schedule = Schedule::new(&[task("t", Some(10), 0), task("", None, 0)]);
-        let mut count = 0;
-        for ms in [0, 10, 45, 50] {
-            let _: Result<(), ()> = schedule.release(ms * 1_000_000, |t| {
-                count += u32::from(t == 0);
-                Ok(())
-            });
-        }
-        // 20 and 30 have passed when 45 comes; 40 runs then, 50 on its own.
-        assert_eq!((count, schedule.skipped(0), schedule.skipped(1)), (4, Some(2), None));
+    fn late_ticks_are_overruns_of_the_tasks_that_were_due() {
+        let tasks = [task("t", Some(20), 0), task("slow", Some(1000), 0), task("", None, 0)];
+        let mut schedule = Schedule::new(&tasks);
+        let mut tick = |ms: i64, late| {
+            let _: Result<(), ()> = schedule.release(Tick { now_ns: ms * 1_000_000, late }, |_| Ok(()));
+        };
+        tick(0, 0);
+        tick(10, 0);
+        // The ticks at 20, 30 and 40 ms were due, the last one runs.
+        tick(40, 3);
+        tick(50, 0);
+        assert_eq!(schedule.overruns(), [2, 0, 3]);
     }
 }
