@@ -1,0 +1,235 @@
+//! The contract of docs/cli.md: commands, exit codes, files, formats.
+
+use plcc_tests::{Done, command, project_root};
+use std::path::Path;
+
+const PLCC: &str = env!("CARGO_BIN_EXE_plcc-under-test");
+
+fn plcc(folder: &Path, args: &[&str]) -> Done {
+    command(Path::new(PLCC), folder, args)
+}
+
+fn folder_with(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("inside the folder")).expect("its folder");
+        std::fs::write(path, text).expect("a file");
+    }
+    folder
+}
+
+const COUNTER: &str = "PROGRAM Main\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n";
+
+#[test]
+fn exit_codes() {
+    let f = folder_with(&[
+        ("good.st", COUNTER),
+        ("bad.st", "PROGRAM Main\nx := 1;\nEND_PROGRAM\n"),
+        ("fault.st", "PROGRAM Main\nVAR n, z : INT; END_VAR\nn := 1 / z;\nEND_PROGRAM\n"),
+    ]);
+    let p = f.path();
+    let run = |args: &[&str]| plcc(p, args).code;
+    assert_eq!(run(&["check", "good.st"]), 0);
+    assert_eq!(run(&["check", "bad.st"]), 1);
+    assert_eq!(run(&["run", "good.st", "--virtual-time", "--cycles", "3"]), 0);
+    assert_eq!(run(&["run", "fault.st", "--virtual-time", "--cycles", "3"]), 1);
+    assert_eq!(run(&["run", "good.st", "--cycles", "3", "--watch", "Main.q"]), 2);
+    assert_eq!(run(&["run", "good.st", "--cycles", "many"]), 2);
+    assert_eq!(run(&["frobnicate"]), 2);
+    assert_eq!(run(&["check", "missing.st"]), 3);
+    assert_eq!(run(&["build", "good.st", "-o", "no/such/folder/app"]), 3);
+    assert_eq!(run(&["run", "good.st", "--cycles", "1", "--trace", "no/such/t.csv"]), 3);
+    assert_eq!(run(&["run", "good.st", "--cycles", "1", "--stimulus", "none.csv"]), 3);
+}
+
+#[test]
+fn the_linked_program_takes_the_run_flags_and_leaves_no_partial_file() {
+    let f = folder_with(&[("good.st", COUNTER), ("in.csv", "cycle,Main.n\n3,40\n")]);
+    let done = plcc(f.path(), &["build", "good.st", "-o", "app"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let app = f.path().join("app");
+    let flags = ["--virtual-time", "--cycles", "4", "--stimulus", "in.csv", "--watch", "main.N", "--trace", "-"];
+    let linked = command(&app, f.path(), &flags);
+    assert_eq!(linked.stdout, "cycle,main.N\n1,1\n2,2\n3,41\n4,42\n");
+    let jit = plcc(f.path(), &[&["run", "good.st"], &flags[..]].concat());
+    assert_eq!(linked.stdout, jit.stdout);
+    assert_eq!(command(&app, f.path(), &["--engine", "jit"]).code, 2);
+    let unlinkable = Path::new(PLCC);
+    let done = std::process::Command::new(unlinkable)
+        .args(["build", "good.st", "-o", "other"])
+        .current_dir(f.path())
+        .env("CC", "no-such-compiler")
+        .output()
+        .expect("plcc starts");
+    assert_eq!(done.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&done.stderr).contains("install a C tool chain"));
+    let left: Vec<String> = std::fs::read_dir(f.path())
+        .expect("the folder")
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .filter(|n| n.starts_with("other") || n.contains("partial"))
+        .collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+#[test]
+fn a_copied_plcc_alone_builds_a_program() {
+    let f = folder_with(&[("good.st", COUNTER)]);
+    let copy = f.path().join("my-plcc");
+    std::fs::copy(PLCC, &copy).expect("a copy");
+    let done = command(&copy, f.path(), &["build", "good.st", "-o", "app"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert_eq!(
+        command(&f.path().join("app"), f.path(), &["--virtual-time", "--cycles", "2", "--watch", "Main.n"]).stdout,
+        "cycle,Main.n\n1,1\n2,2\n"
+    );
+}
+
+#[test]
+fn new_makes_a_project_that_builds_and_runs() {
+    let f = folder_with(&[]);
+    assert_eq!(plcc(f.path(), &["new", "blink"]).code, 0);
+    assert_eq!(plcc(f.path(), &["new", "blink"]).code, 3);
+    let done =
+        plcc(f.path(), &["run", "blink/project.toml", "--virtual-time", "--cycles", "120", "--watch", "Main.lamp"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let changes: Vec<&str> = done.stdout.lines().filter(|l| l.ends_with("TRUE")).take(1).collect();
+    assert_eq!(changes, ["51,TRUE"], "{}", done.stdout);
+    assert!(done.stderr.is_empty(), "{}", done.stderr);
+    let inside = f.path().join("blink");
+    assert_eq!(plcc(&inside, &["build", "project.toml"]).code, 0);
+    assert!(inside.join("blink").is_file());
+}
+
+#[test]
+fn folders_globs_and_several_files() {
+    let f = folder_with(&[
+        ("src/main.st", "PROGRAM Main\nVAR n : INT; END_VAR\nn := Twice(n + 1);\nEND_PROGRAM\n"),
+        ("src/deep/f.ST", "FUNCTION Twice : INT\nVAR_INPUT x : INT; END_VAR\nTwice := 2 * x;\nEND_FUNCTION\n"),
+        ("src/notes.md", "not a source"),
+    ]);
+    for sources in [&["src"][..], &["src/**/*.[sS][tT]"], &["src/main.st", "src/deep/f.ST"]] {
+        let args = [&["run"], sources, &["--virtual-time", "--cycles", "3", "--watch", "Main.n"]].concat();
+        let done = plcc(f.path(), &args);
+        assert_eq!(done.stdout, "cycle,Main.n\n1,2\n2,6\n3,14\n", "{}", done.stderr);
+    }
+    assert_eq!(plcc(f.path(), &["check", "*.st"]).code, 3);
+}
+
+#[test]
+fn the_project_file_is_strict_and_helpful() {
+    let project = |text: &str| {
+        let f = folder_with(&[("main.st", COUNTER), ("project.toml", text)]);
+        plcc(f.path(), &["check", "project.toml"])
+    };
+    assert_eq!(project("[project]\nname = \"a\"\nsources = [\"main.st\"]\n").code, 0);
+    let typo = project("[project]\nname = \"a\"\nsources = [\"main.st\"]\nprofil = \"strict\"\n");
+    assert_eq!(typo.code, 2);
+    assert!(typo.stderr.contains("did you mean `profile`?"), "{}", typo.stderr);
+    let missing = project("[project]\nname = \"a\"\nsources = [\"none.st\"]\n");
+    assert_eq!(missing.code, 3);
+    let broken = project("[project\n");
+    assert_eq!(broken.code, 2);
+    assert!(broken.stderr.contains("line 1"), "{}", broken.stderr);
+    let tasks =
+        "[project]\nname = \"a\"\nsources = [\"main.st\"]\n[tasks.slow]\ninterval = \"20ms\"\nprograms = [\"Mein\"]\n";
+    assert!(project(tasks).stderr.contains("did you mean `Main`?"));
+}
+
+#[test]
+fn tasks_of_the_project_file_run_at_their_interval() {
+    let f = folder_with(&[
+        (
+            "main.st",
+            "PROGRAM A\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\nPROGRAM B\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n",
+        ),
+        (
+            "project.toml",
+            "[project]\nname = \"a\"\nsources = [\"main.st\"]\n[tasks.fast]\ninterval = \"10ms\"\nprograms = [\"A\"]\n\
+             [tasks.slow]\ninterval = \"20ms\"\npriority = 2\nprograms = [\"B\"]\n",
+        ),
+    ]);
+    let done = plcc(f.path(), &["run", "project.toml", "--virtual-time", "--cycles", "4", "--watch", "A.n,B.n"]);
+    assert_eq!(done.stdout, "cycle,A.n,B.n\n1,1,1\n2,2,1\n3,3,2\n4,4,2\n", "{}", done.stderr);
+}
+
+#[test]
+fn a_library_has_its_own_profile() {
+    let f = folder_with(&[
+        ("main.st", "PROGRAM Main\nVAR n : INT; END_VAR\nn := Lax(2.5);\nEND_PROGRAM\n"),
+        ("lib/lax.st", "FUNCTION Lax : INT\nVAR_INPUT x : REAL; END_VAR\nLax := x;\nEND_FUNCTION\n"),
+        (
+            "project.toml",
+            "[project]\nname = \"a\"\nsources = [\"main.st\"]\n[libraries]\nlax = { path = \"lib\", profile = \"codesys\" }\n",
+        ),
+    ]);
+    let done = plcc(f.path(), &["run", "project.toml", "--virtual-time", "--cycles", "1", "--watch", "Main.n"]);
+    assert_eq!((done.code, done.stdout.as_str()), (0, "cycle,Main.n\n1,2\n"), "{}", done.stderr);
+    let strict = plcc(f.path(), &["check", "main.st", "lib/lax.st"]);
+    assert_eq!(strict.code, 1);
+    assert!(strict.stderr.contains("--profile codesys"), "{}", strict.stderr);
+}
+
+#[test]
+fn messages_as_json_and_sarif() {
+    let f = folder_with(&[("bad.st", "PROGRAM Main\nVAR level : INT; END_VAR\nlevl := 1;\nEND_PROGRAM\n")]);
+    let json = plcc(f.path(), &["check", "bad.st", "--message-format", "json"]);
+    let value: serde_json::Value = serde_json::from_str(json.stderr.trim()).expect("one JSON object");
+    assert_eq!(value["code"], "E0201");
+    assert_eq!(value["primary"]["line"], 3);
+    assert_eq!(value["primary"]["column"], 1);
+    assert_eq!(value["help"][0], "did you mean `level`?");
+    let sarif = plcc(f.path(), &["check", "bad.st", "--message-format", "sarif"]);
+    let value: serde_json::Value = serde_json::from_str(&sarif.stderr).expect("a SARIF log");
+    assert_eq!(value["version"], "2.1.0");
+    assert_eq!(value["runs"][0]["results"][0]["ruleId"], "E0201");
+    assert_eq!(value["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["region"]["startLine"], 3);
+}
+
+#[test]
+fn every_stage_can_be_printed() {
+    let tank = project_root().join("examples/tank/project.toml").display().to_string();
+    let f = folder_with(&[]);
+    for (stage, word) in [
+        ("tokens", "END_FUNCTION_BLOCK"),
+        ("ast", "TankControl"),
+        ("hir", "FUNCTION_BLOCK TankControl"),
+        ("mir", "Main"),
+        ("clif", "function"),
+        ("asm", "ret"),
+    ] {
+        let done = plcc(f.path(), &["build", &tank, "--emit", stage]);
+        assert_eq!(done.code, 0, "{stage}: {}", done.stderr);
+        assert!(done.stdout.contains(word), "{stage}: {}", &done.stdout[..done.stdout.len().min(500)]);
+    }
+}
+
+#[test]
+fn other_targets_yield_an_object_and_a_header() {
+    let f = folder_with(&[("good.st", COUNTER)]);
+    let done = plcc(f.path(), &["build", "good.st", "--target", "aarch64-unknown-linux-gnu", "-o", "app"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(done.stderr.contains("app.o"), "{}", done.stderr);
+    assert!(f.path().join("app.o").exists() && f.path().join("app.h").exists());
+    assert_eq!(plcc(f.path(), &["build", "good.st", "--target", "pdp11-dec-none"]).code, 2);
+}
+
+#[test]
+fn real_time_runs_stop_on_a_signal_with_a_whole_trace() {
+    let f = folder_with(&[("good.st", COUNTER)]);
+    let mut child = std::process::Command::new(PLCC)
+        .args(["run", "good.st", "--interval", "5ms", "--watch", "Main.n", "--trace", "t.csv"])
+        .current_dir(f.path())
+        .spawn()
+        .expect("plcc starts");
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let pid = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-TERM", &pid]).status().expect("kill runs").success());
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    let trace = std::fs::read_to_string(f.path().join("t.csv")).expect("the trace");
+    assert!(trace.ends_with('\n') && trace.lines().count() > 10, "{trace}");
+    for (n, line) in trace.lines().enumerate().skip(1) {
+        assert_eq!(line, format!("{n},{n}"));
+    }
+}

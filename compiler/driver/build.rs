@@ -10,7 +10,8 @@ fn main() {
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let manifest = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR"));
     let root = manifest.join("../..");
-    for input in ["runtime/src", "runtime/Cargo.toml", "stdlib/src", "stdlib/blocks", "stdlib/Cargo.toml", "Cargo.lock"] {
+    for input in ["runtime/src", "runtime/Cargo.toml", "stdlib/src", "stdlib/blocks", "stdlib/Cargo.toml", "Cargo.lock"]
+    {
         println!("cargo::rerun-if-changed={}", root.join(input).display());
     }
     let target_dir = out.join("runtime");
@@ -23,7 +24,8 @@ fn main() {
         .args(["--locked", "--target", &target, "--target-dir"])
         .arg(&target_dir);
     // What the outer call is about (clippy, coverage, its own profile) is not about the archive.
-    for name in ["RUSTC_WORKSPACE_WRAPPER", "RUSTC_WRAPPER", "CARGO_ENCODED_RUSTFLAGS", "RUSTFLAGS", "CARGO_TARGET_DIR"] {
+    for name in ["RUSTC_WORKSPACE_WRAPPER", "RUSTC_WRAPPER", "CARGO_ENCODED_RUSTFLAGS", "RUSTFLAGS", "CARGO_TARGET_DIR"]
+    {
         command.env_remove(name);
     }
     let status = command.status().expect("cargo runs");

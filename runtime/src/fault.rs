@@ -18,7 +18,7 @@ pub fn describe(image: &Image, mem: &Region, number: u32, task: usize, cycle: u6
         out.push_str(&format!("  --> {file}:{}:{}\n", source.line, source.column));
         let instance = match mem.read_u32(region::FAULT_INSTANCE) {
             0 => None,
-            offset => instance_path(image, offset),
+            offset => instance_path(image, &source.pou, offset),
         };
         match instance {
             Some(path) => out.push_str(&format!("  in {} (instance {path})\n", source.pou)),
@@ -35,34 +35,50 @@ pub fn describe(image: &Image, mem: &Region, number: u32, task: usize, cycle: u6
     out
 }
 
-/// The path of the function block instance that starts at an offset; of a program, its name.
-fn instance_path(image: &Image, offset: u32) -> Option<String> {
+/// The path of the instance of a POU that starts at an offset. The variables of a program are roots of their own; its name
+/// is what stands in front of their dot.
+///
+/// The first part of an instance starts where the instance does, so the POU decides between them; where none fits, the
+/// outermost is told.
+fn instance_path(image: &Image, pou: &str, offset: u32) -> Option<String> {
+    let pou = pou.split('.').next().unwrap_or(pou);
+    let mut outermost = None;
     for root in &image.roots {
-        if let Some(path) = inside(image, &root.name, root.offset, root.ty, offset, 0) {
-            return Some(path);
+        let mut found = Vec::new();
+        inside(image, &root.name, root.offset, root.ty, offset, &mut found);
+        if let Some((path, _)) = found.iter().find(|(_, name)| name.eq_ignore_ascii_case(pou)) {
+            return Some(path.clone());
         }
+        outermost = outermost.or(found.into_iter().next().map(|(path, _)| path));
     }
     // Not a function block: the program whose variables start there.
-    let first = image.roots.iter().filter(|r| r.offset >= offset && r.name.contains('.')).min_by_key(|r| r.offset)?;
-    first.name.split_once('.').map(|(program, _)| program.to_string())
+    let program = || {
+        let own = image.roots.iter().filter(|r| r.offset >= offset && r.name.contains('.') && r.bit.is_none());
+        own.min_by_key(|r| r.offset)?.name.split_once('.').map(|(program, _)| program.to_string())
+    };
+    let is_block =
+        image.types.iter().any(|t| matches!(t, TypeDesc::Struct { name, .. } if name.eq_ignore_ascii_case(pou)));
+    if is_block { outermost.or_else(program) } else { program().or(outermost) }
 }
 
-fn inside(image: &Image, name: &str, start: u32, ty: u32, wanted: u32, depth: u32) -> Option<String> {
-    if wanted < start || depth > 64 {
-        return None;
+/// Collects the structures that start at `wanted` inside a variable, with the names of their types, outermost first.
+fn inside(image: &Image, name: &str, start: u32, ty: u32, wanted: u32, found: &mut Vec<(String, String)>) {
+    if wanted < start || found.len() > 64 {
+        return;
     }
-    match image.types.get(ty as usize)? {
-        TypeDesc::Struct { fields, .. } => {
+    match image.types.get(ty as usize) {
+        Some(TypeDesc::Struct { fields, name: type_name }) => {
             if start == wanted {
-                return Some(name.to_string());
+                found.push((name.to_string(), type_name.clone()));
             }
-            let field = fields.iter().filter(|f| start + f.offset <= wanted).max_by_key(|f| f.offset)?;
-            inside(image, &format!("{name}.{}", field.name), start + field.offset, field.ty, wanted, depth + 1)
+            if let Some(field) = fields.iter().filter(|f| start + f.offset <= wanted).max_by_key(|f| f.offset) {
+                inside(image, &format!("{name}.{}", field.name), start + field.offset, field.ty, wanted, found);
+            }
         }
-        TypeDesc::Array { dims, elem, stride } => {
-            let mut flat = i64::from((wanted - start).checked_div(*stride)?);
+        Some(TypeDesc::Array { dims, elem, stride }) if *stride > 0 => {
+            let mut flat = i64::from((wanted - start) / stride);
             if flat >= dims.iter().map(|(l, h)| h - l + 1).product() {
-                return None;
+                return;
             }
             let at = start + flat as u32 * stride;
             let mut index: Vec<String> = Vec::new();
@@ -72,8 +88,42 @@ fn inside(image: &Image, name: &str, start: u32, ty: u32, wanted: u32, depth: u3
                 flat /= size;
             }
             index.reverse();
-            inside(image, &format!("{name}[{}]", index.join(",")), at, *elem, wanted, depth + 1)
+            inside(image, &format!("{name}[{}]", index.join(",")), at, *elem, wanted, found);
         }
-        _ => None,
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::{Field, Root};
+    use plcc_stdlib::elem::Elem;
+
+    /// `Main` at 64: `b : ARRAY [1..2] OF Outer` (16 bytes each), whose first variable is `i : Inner`, then `n : INT`.
+    fn image() -> Image {
+        let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
+        let root =
+            |name: &str, offset, ty| Root { name: name.into(), offset, bit: None, ty, constant: false, retain: false };
+        Image {
+            types: vec![
+                TypeDesc::Elem(Elem::Int.code()),
+                TypeDesc::Struct { name: "Inner".into(), fields: vec![field("x", 0, 0)] },
+                TypeDesc::Struct { name: "Outer".into(), fields: vec![field("i", 0, 1), field("n", 8, 0)] },
+                TypeDesc::Array { dims: vec![(1, 2)], elem: 2, stride: 16 },
+            ],
+            roots: vec![root("Main.b", 64, 3), root("Main.n", 96, 0)],
+            ..Image::default()
+        }
+    }
+
+    #[test]
+    fn the_pou_decides_between_an_instance_and_its_first_part() {
+        let image = image();
+        let path = |pou, offset| instance_path(&image, pou, offset);
+        assert_eq!(path("Main", 64).as_deref(), Some("Main"));
+        assert_eq!(path("Outer", 64).as_deref(), Some("Main.b[1]"));
+        assert_eq!(path("Outer.Act", 80).as_deref(), Some("Main.b[2]"));
+        assert_eq!(path("Inner", 80).as_deref(), Some("Main.b[2].i"));
     }
 }

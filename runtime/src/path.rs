@@ -1,9 +1,9 @@
 //! Names of variables (`Main.t.Q`, `Main.a[3]`, `Res.P1.x`) to places in the region, and values there to text and back.
 
 use crate::image::{Image, TypeDesc};
-use plcc_stdlib::elem::{Elem, Family};
-use plcc_stdlib::literal::{self, Nul};
-use plcc_stdlib::value;
+use plcc_stdlib::elem::Elem;
+use plcc_stdlib::value::{self, Kind, Value};
+use std::fmt::Write;
 
 /// More columns than anybody reads; a bound for arrays of arrays.
 pub const MAX_COLUMNS: usize = 1_000_000;
@@ -247,33 +247,41 @@ impl<'i> Resolver<'i> {
 
     /// The value of a leaf as the trace shows it.
     pub fn text(&self, leaf: &Leaf, mem: &[u8]) -> String {
+        let mut out = String::new();
+        self.write(leaf, mem, &mut out);
+        out
+    }
+
+    /// Appends the value of a leaf as the trace shows it.
+    pub fn write(&self, leaf: &Leaf, mem: &[u8], out: &mut String) {
         let at = leaf.offset as usize;
-        match self.image.types.get(leaf.ty as usize) {
+        // Writing to a String does not fail.
+        let _ = match self.image.types.get(leaf.ty as usize) {
             Some(TypeDesc::Elem(code)) => {
                 let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
-                value::format_scalar(elem, read(mem, leaf, elem))
+                value::write_scalar(out, elem, read(mem, leaf, elem))
             }
             Some(TypeDesc::Enum { elem, values }) => {
                 let elem = Elem::from_code(*elem).unwrap_or(Elem::Int);
                 let number = elem.to_i128(read(mem, leaf, elem));
                 match values.iter().find(|(_, v)| i128::from(*v) == number) {
-                    Some((name, _)) => name.clone(),
-                    None => number.to_string(),
+                    Some((name, _)) => out.write_str(name),
+                    None => write!(out, "{number}"),
                 }
             }
             Some(TypeDesc::String { wide: false, capacity }) => {
                 let text = mem.get(at..at + *capacity as usize).unwrap_or_default();
                 let end = text.iter().position(|b| *b == 0).unwrap_or(text.len());
-                value::format_string(&text[..end])
+                value::write_string(out, &text[..end])
             }
             Some(TypeDesc::String { wide: true, capacity }) => {
                 let bytes = mem.get(at..at + 2 * *capacity as usize).unwrap_or_default();
                 let units: Vec<u16> = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
                 let end = units.iter().position(|u| *u == 0).unwrap_or(units.len());
-                value::format_wstring(&units[..end])
+                value::write_wstring(out, &units[..end])
             }
-            _ => value::format_scalar(Elem::Dword, read(mem, leaf, Elem::Dword)),
-        }
+            _ => value::write_scalar(out, Elem::Dword, read(mem, leaf, Elem::Dword)),
+        };
     }
 
     /// A literal's text as bytes for a leaf (one byte, 0 or 1, for a bit).
@@ -282,8 +290,10 @@ impl<'i> Resolver<'i> {
         match self.image.types.get(leaf.ty as usize) {
             Some(TypeDesc::Elem(code)) => {
                 let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
-                let raw = literal::parse(elem, without_prefix(elem, text)?).map_err(|e| e.to_string())?;
-                Ok(raw.to_le_bytes()[..elem.bytes() as usize].to_vec())
+                match Kind::Elem(elem).parse(text).map_err(|e| e.to_string())? {
+                    Value::Scalar { raw, .. } => Ok(raw.to_le_bytes()[..elem.bytes() as usize].to_vec()),
+                    _ => Err(format!("`{text}` is no {}", elem.name())),
+                }
             }
             Some(TypeDesc::Enum { elem, values }) => {
                 let elem = Elem::from_code(*elem).unwrap_or(Elem::Int);
@@ -297,13 +307,17 @@ impl<'i> Resolver<'i> {
                 }
             }
             Some(TypeDesc::String { wide: false, capacity }) => {
-                let mut bytes = literal::string(text, Nul::Ends).map_err(|e| e.to_string())?;
+                let Value::String(mut bytes) = Kind::String.parse(text).map_err(|e| e.to_string())? else {
+                    return Err(format!("`{text}` is no STRING"));
+                };
                 bytes.truncate(*capacity as usize);
                 bytes.push(0);
                 Ok(bytes)
             }
             Some(TypeDesc::String { wide: true, capacity }) => {
-                let mut units = literal::wstring(text, Nul::Ends).map_err(|e| e.to_string())?;
+                let Value::WString(mut units) = Kind::WString.parse(text).map_err(|e| e.to_string())? else {
+                    return Err(format!("`{text}` is no WSTRING"));
+                };
                 units.truncate(*capacity as usize);
                 units.push(0);
                 Ok(units.iter().flat_map(|u| u.to_le_bytes()).collect())
@@ -344,30 +358,6 @@ pub fn write(mem: &mut [u8], offset: u32, bit: Option<u8>, bytes: &[u8]) {
             }
         }
     }
-}
-
-/// `INT#5` and `T#5s` without their prefix, if it is that of the type.
-fn without_prefix(elem: Elem, text: &str) -> Result<&str, String> {
-    let Some((prefix, rest)) = text.split_once('#') else {
-        return if elem.is_time_like() && elem.family() != Family::Char {
-            Err(format!("`{text}` is no {}; write it with its prefix", elem.name()))
-        } else {
-            Ok(text)
-        };
-    };
-    // `16#FF` has a base in front.
-    if prefix.trim_start_matches('-').bytes().all(|b| b.is_ascii_digit()) {
-        return Ok(text);
-    }
-    let named = match prefix.to_ascii_uppercase().as_str() {
-        "T" => Some(Elem::Time),
-        "LT" => Some(Elem::Ltime),
-        "D" => Some(Elem::Date),
-        "LD" => Some(Elem::Ldate),
-        other => Elem::from_name(other),
-    };
-    let fits = named.is_some_and(|n| n == elem || (n.family() == elem.family() && elem.is_time_like()));
-    if fits { Ok(rest) } else { Err(format!("`{text}` is no {}", elem.name())) }
 }
 
 /// Edit distance, for suggestions.
@@ -414,7 +404,8 @@ mod tests {
         let matrix = TypeDesc::Array { dims: vec![(1, 2), (0, 1)], elem: 0, stride: 2 };
         let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
         let block = TypeDesc::Struct { name: "Fb".into(), fields: vec![field("m", 8, 1), field("n", 0, 0)] };
-        let root = |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, constant: false, retain: false };
+        let root =
+            |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, constant: false, retain: false };
         Image {
             configuration: "Conf".into(),
             resource: "Res".into(),

@@ -12,6 +12,7 @@ use crate::task::{Schedule, base_tick};
 use crate::trace::{self, Trace};
 use crate::watchdog::Watchdog;
 use crate::{fault, signals};
+use std::io::Write;
 use std::path::Path;
 
 /// Runs it; messages go to standard error.
@@ -41,12 +42,15 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     let stimulus = flags.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose()?;
     // A watch list alone is read on standard output.
     let trace_path = flags.trace.as_deref().or(flags.watch.as_ref().map(|_| Path::new("-")));
-    let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(|e| (if e.is_empty() { 0 } else { 3 }, e))?;
+    let trace = trace_path
+        .map(|path| Trace::open(path, columns))
+        .transpose()
+        .map_err(|e| (if e.is_empty() { 0 } else { 3 }, e))?;
     signals::install();
     let mut mem = Region::new(image.region_bytes as usize);
     engine.init(&mut mem, true);
     // SAFETY: `mem` lives to the end of this function, behind the watchdog's drop: it is declared before.
-    let watchdog = unsafe { Watchdog::new(mem.as_mut_ptr()) }
+    let mut watchdog = unsafe { Watchdog::new(mem.as_mut_ptr(), &image.tasks) }
         .map_err(|e| (3, format!("cannot start the watchdog thread: {e}")))?;
     let interval_ns = flags.interval.unwrap_or_else(|| base_tick(&image.tasks));
     let mut scan = Scan {
@@ -54,7 +58,7 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
         resolver: &resolver,
         engine,
         mem: &mut mem,
-        watchdog: &watchdog,
+        watchdog: &mut watchdog,
         clock: Clock::new(flags.virtual_time, interval_ns),
         schedule: Schedule::new(&image.tasks),
         stimulus,
@@ -64,7 +68,14 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     };
     let end = scan.run();
     if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
-        eprint!("{}", stats.report(&image.tasks, scan.clock.overruns(), format == "json"));
+        let report = stats.report(&image.tasks, scan.schedule.overruns(), format == "json");
+        // A result; but where the trace is on standard output, nothing else may stand there.
+        if trace_path == Some(Path::new("-")) {
+            eprint!("{report}");
+        } else {
+            // A reader that went away does not matter any more.
+            let _ = std::io::stdout().write_all(report.as_bytes());
+        }
     }
     match end {
         End::Stopped => Ok(0),

@@ -1,6 +1,6 @@
 //! The scan loop: inputs, execute, outputs.
 
-use crate::clock::{Clock, monotonic_ns};
+use crate::clock::{Clock, Tick, monotonic_ns};
 use crate::engine::{Engine, Region};
 use crate::image::Image;
 use crate::path::Resolver;
@@ -17,7 +17,7 @@ pub struct Scan<'a> {
     pub resolver: &'a Resolver<'a>,
     pub engine: &'a mut dyn Engine,
     pub mem: &'a mut Region,
-    pub watchdog: &'a Watchdog,
+    pub watchdog: &'a mut Watchdog,
     pub clock: Clock,
     pub schedule: Schedule,
     pub stimulus: Option<Stimulus>,
@@ -43,11 +43,11 @@ impl Scan<'_> {
     pub fn run(&mut self) -> End {
         let mut cycle: u64 = 1;
         while self.cycles.is_none_or(|n| cycle <= n) && !signals::stop_requested() {
-            let Some(now) = self.clock.wait(cycle, signals::stop_requested) else { break };
+            let Some(tick) = self.clock.wait(cycle, signals::stop_requested) else { break };
             if let Some(stimulus) = &mut self.stimulus {
                 stimulus.apply(cycle, self.mem.as_mut_slice());
             }
-            if let Err((number, task)) = self.execute(now) {
+            if let Err((number, task)) = self.execute(tick) {
                 process_image::safe_state(self.image, self.mem);
                 return match self.flush() {
                     Err(e) if !e.is_empty() => End::Trace(e),
@@ -67,13 +67,14 @@ impl Scan<'_> {
         }
     }
 
-    fn execute(&mut self, now: i64) -> Result<(), (u32, usize)> {
-        let Scan { schedule, engine, mem, watchdog, stats, image, .. } = self;
-        schedule.release(now, |task| {
+    fn execute(&mut self, tick: Tick) -> Result<(), (u32, usize)> {
+        let Scan { schedule, engine, mem, watchdog, stats, .. } = self;
+        schedule.release(tick, |task| {
             let before = stats.as_ref().map(|_| monotonic_ns());
-            watchdog.start(image.tasks[task].watchdog_ns);
-            let status = engine.scan(mem, task as u32, now);
-            watchdog.stop();
+            watchdog.start(task);
+            let status = engine.scan(mem, task as u32, tick.now_ns);
+            // An execution that ended late without a poll has ended: there is nothing left to stop.
+            let _ = watchdog.stop();
             if let (Some(stats), Some(before)) = (stats.as_mut(), before) {
                 stats.record(task, monotonic_ns() - before);
             }

@@ -16,7 +16,8 @@ impl Stats {
     /// Empty.
     pub fn new(tasks: &[Task]) -> Self {
         // The bounds are constants that the crate accepts.
-        let histogram = || Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| unreachable!("fixed bounds"));
+        let histogram =
+            || Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| unreachable!("fixed bounds"));
         Self { tasks: tasks.iter().map(|_| histogram()).collect() }
     }
 
@@ -28,8 +29,8 @@ impl Stats {
     }
 
     /// The report; `json` chooses the form.
-    pub fn report(&self, tasks: &[Task], overruns: u64, json: bool) -> String {
-        let rows = tasks.iter().zip(&self.tasks).map(|(task, h)| {
+    pub fn report(&self, tasks: &[Task], overruns: &[u64], json: bool) -> String {
+        let rows = tasks.iter().zip(&self.tasks).zip(overruns).map(|((task, h), overruns)| {
             let name = if task.name.is_empty() { "(every tick)" } else { &task.name };
             let values = [
                 h.len(),
@@ -39,30 +40,52 @@ impl Stats {
                 h.value_at_quantile(0.99),
                 h.value_at_quantile(0.999),
                 h.max(),
+                *overruns,
             ];
             (name, values)
         });
         if json {
             let rows: Vec<String> = rows
-                .map(|(name, [cycles, min, mean, p50, p99, p999, max])| {
+                .map(|(name, [cycles, min, mean, p50, p99, p999, max, overruns])| {
                     format!(
-                        "{{\"task\":\"{name}\",\"executions\":{cycles},\"min_ns\":{min},\"mean_ns\":{mean},\"p50_ns\":{p50},\
-                         \"p99_ns\":{p99},\"p99_9_ns\":{p999},\"max_ns\":{max}}}"
+                        "{{\"task\":\"{name}\",\"cycles\":{cycles},\"min_ns\":{min},\"mean_ns\":{mean},\"p50_ns\":{p50},\
+                         \"p99_ns\":{p99},\"p99_9_ns\":{p999},\"max_ns\":{max},\"overruns\":{overruns}}}"
                     )
                 })
                 .collect();
-            return format!("{{\"overruns\":{overruns},\"tasks\":[{}]}}\n", rows.join(","));
+            return format!("{{\"tasks\":[{}]}}\n", rows.join(","));
         }
         let mut out = format!(
-            "{:<16}{:>12}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
-            "task [ns]", "executions", "min", "mean", "p50", "p99", "p99.9", "max"
+            "{:<16}{:>12}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
+            "task [ns]", "cycles", "min", "mean", "p50", "p99", "p99.9", "max", "overruns"
         );
         for (name, [cycles, rest @ ..]) in rows {
             out.push_str(&format!("{name:<16}{cycles:>12}"));
             out.extend(rest.map(|v| format!("{v:>10}")));
             out.push('\n');
         }
-        out.push_str(&format!("overruns: {overruns}\n"));
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_forms_tell_the_same() {
+        let tasks = [Task { name: "Fast".into(), interval_ns: None, priority: 0, watchdog_ns: 0 }];
+        let mut stats = Stats::new(&tasks);
+        for ns in [100, 300, 200] {
+            stats.record(0, ns);
+        }
+        assert_eq!(
+            stats.report(&tasks, &[4], true),
+            "{\"tasks\":[{\"task\":\"Fast\",\"cycles\":3,\"min_ns\":100,\"mean_ns\":200,\"p50_ns\":200,\"p99_ns\":300,\
+             \"p99_9_ns\":300,\"max_ns\":300,\"overruns\":4}]}\n"
+        );
+        let text = stats.report(&tasks, &[4], false);
+        let words: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().collect();
+        assert_eq!(words, ["Fast", "3", "100", "200", "200", "300", "300", "300", "4"]);
     }
 }

@@ -34,47 +34,54 @@ impl Stimulus {
             std::fs::File::open(path).map_err(io)?.read_to_end(&mut text).map_err(io)?;
         }
         let shown = if name == "-" { "<stdin>" } else { &name };
-        Self::parse(shown, &text, resolver).map_err(|message| (2, message))
+        // As sources: UTF-8 or, if it is not, Latin-1 (semantics.md \[L1\]).
+        let text = String::from_utf8(text).unwrap_or_else(|e| e.into_bytes().into_iter().map(char::from).collect());
+        Self::parse(shown, text.trim_start_matches('\u{feff}'), resolver).map_err(|message| (2, message))
     }
 
-    fn parse(name: &str, text: &[u8], resolver: &Resolver) -> Result<Self, String> {
-        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text);
+    fn parse(name: &str, text: &str, resolver: &Resolver) -> Result<Self, String> {
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
         let mut records = reader.records();
-        let at = |line: u64, column: usize| format!("{name}:{line}:{column}");
-        let Some(header) = records.next() else { return Err(format!("{}: the header is missing", at(1, 1))) };
+        let place = |record: &csv::StringRecord, field: usize| {
+            let (line, column) = place(text, record.position().map_or(0, |p| p.byte() as usize), field);
+            format!("{name}:{line}:{column}")
+        };
+        let Some(header) = records.next() else { return Err(format!("{name}:1:1: the header is missing")) };
         let header = header.map_err(|e| format!("{name}: {e}"))?;
-        let first = header.get(0).unwrap_or_default().trim().trim_start_matches('\u{feff}');
+        let first = header.get(0).unwrap_or_default().trim();
         if !first.eq_ignore_ascii_case("cycle") {
-            return Err(format!("{}: the first column must be `cycle`, not `{first}`", at(1, 1)));
+            return Err(format!("{}: the first column must be `cycle`, not `{first}`", place(&header, 0)));
         }
         let mut leaves = Vec::new();
         for n in 1..header.len() {
             let path = header.get(n).unwrap_or_default();
-            let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", at(1, column(&header, n))))?;
+            let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", place(&header, n)))?;
             if leaf.constant {
-                return Err(format!("{}: `{}` is a CONSTANT", at(1, column(&header, n)), path.trim()));
+                return Err(format!("{}: `{}` is a CONSTANT", place(&header, n), path.trim()));
             }
             leaves.push(leaf);
         }
         let mut rows: Vec<(u64, Vec<Write>)> = Vec::new();
         for record in records {
             let record = record.map_err(|e| format!("{name}: {e}"))?;
-            let line = record.position().map_or(0, csv::Position::line);
             let cycle_text = record.get(0).unwrap_or_default().trim();
             if cycle_text.is_empty() && record.len() <= 1 {
                 continue;
             }
             let cycle: u64 = match cycle_text.parse() {
                 Ok(cycle) if cycle > 0 => cycle,
-                _ => return Err(format!("{}: `{cycle_text}` is no cycle; they count from 1", at(line, 1))),
+                _ => return Err(format!("{}: `{cycle_text}` is no cycle; they count from 1", place(&record, 0))),
             };
             if let Some((before, _)) = rows.last()
                 && *before >= cycle
             {
-                return Err(format!("{}: cycle {cycle} comes after cycle {before}; rows are in rising order", at(line, 1)));
+                return Err(format!(
+                    "{}: cycle {cycle} comes after cycle {before}; rows are in rising order",
+                    place(&record, 0)
+                ));
             }
             if record.len() > leaves.len() + 1 {
-                let place = at(line, column(&record, leaves.len() + 1));
+                let place = place(&record, leaves.len() + 1);
                 return Err(format!("{place}: {} fields, the header has {}", record.len(), leaves.len() + 1));
             }
             let mut writes = Vec::new();
@@ -84,7 +91,7 @@ impl Stimulus {
                     continue;
                 }
                 let bytes = resolver.bytes(leaf, text).map_err(|e| {
-                    format!("{}: {}: {e}", at(line, column(&record, n + 1)), header.get(n + 1).unwrap_or_default().trim())
+                    format!("{}: {}: {e}", place(&record, n + 1), header.get(n + 1).unwrap_or_default().trim())
                 })?;
                 writes.push(Write { offset: leaf.offset, bit: leaf.bit, bytes });
             }
@@ -107,9 +114,26 @@ impl Stimulus {
     }
 }
 
-/// The column, from 1, where a field starts in its line (quotes not counted).
-fn column(record: &csv::StringRecord, field: usize) -> usize {
-    1 + record.iter().take(field).map(|f| f.chars().count() + 1).sum::<usize>()
+/// Line and column, from 1, where a field of the record that starts at or after a byte begins; quoted fields (RFC 4180) may
+/// hold commas and line ends.
+fn place(text: &str, start: usize, field: usize) -> (usize, usize) {
+    let rest = &text[start.min(text.len())..];
+    let start = text.len() - rest.trim_start_matches(['\r', '\n']).len();
+    let mut at = start;
+    let (mut fields, mut quoted) = (0, false);
+    for (n, c) in text[start..].char_indices() {
+        if fields == field {
+            break;
+        }
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields += 1,
+            _ => {}
+        }
+        at = start + n + c.len_utf8();
+    }
+    let line_start = text[..at].rfind('\n').map_or(0, |n| n + 1);
+    (1 + text[..at].matches('\n').count(), 1 + text[line_start..at].chars().count())
 }
 
 #[cfg(test)]
@@ -119,7 +143,14 @@ mod tests {
     use plcc_stdlib::elem::Elem;
 
     fn image() -> Image {
-        let root = |name: &str, offset, constant| Root { name: name.into(), offset, bit: None, ty: 0, constant, retain: false };
+        let root = |name: &str, offset, constant| Root {
+            name: name.into(),
+            offset,
+            bit: None,
+            ty: 0,
+            constant,
+            retain: false,
+        };
         Image {
             types: vec![TypeDesc::Elem(Elem::Int.code())],
             roots: vec![root("M.a", 64, false), root("M.b", 66, false), root("M.c", 68, true)],
@@ -131,7 +162,7 @@ mod tests {
     fn values_stay_until_overwritten() {
         let image = image();
         let resolver = Resolver::new(&image);
-        let mut s = Stimulus::parse("s.csv", b"cycle,M.a,M.b\n2,5,\n4,,16#10\n", &resolver).unwrap();
+        let mut s = Stimulus::parse("s.csv", "cycle,M.a,M.b\n2,5,\n4,,16#10\n", &resolver).unwrap();
         let mut mem = vec![0; 80];
         let mut seen = Vec::new();
         for cycle in 1..=4 {
@@ -145,7 +176,7 @@ mod tests {
     fn mistakes_have_a_place() {
         let image = image();
         let resolver = Resolver::new(&image);
-        let error = |text: &str| Stimulus::parse("s.csv", text.as_bytes(), &resolver).unwrap_err();
+        let error = |text: &str| Stimulus::parse("s.csv", text, &resolver).unwrap_err();
         assert!(error("cycle,M.x\n").starts_with("s.csv:1:7: there is no variable `M.x`"));
         assert!(error("time,M.a\n").starts_with("s.csv:1:1:"));
         assert!(error("cycle,M.a\n1,TRUE\n").starts_with("s.csv:2:3:"));
@@ -153,5 +184,10 @@ mod tests {
         assert!(error("cycle,M.a\n0,1\n").starts_with("s.csv:2:1:"));
         assert!(error("cycle,M.a\n1,1,2\n").starts_with("s.csv:2:5:"));
         assert!(error("cycle,M.c\n").contains("CONSTANT"));
+        // Quotes, blank lines and line ends inside quotes count as they stand in the file.
+        assert!(error("cycle,M.a,M.b\n1,\"5\",x\n").starts_with("s.csv:2:7:"));
+        assert!(error("cycle,M.a\r\n\r\n1,1\r\n\r\n2,x\r\n").starts_with("s.csv:5:3:"));
+        assert!(error("cycle,M.a,M.b\n1,\"\n5\",x\n").starts_with("s.csv:3:4:"));
+        assert!(error("").starts_with("s.csv:1:1:"));
     }
 }

@@ -9,6 +9,8 @@ pub struct Trace {
     columns: Vec<(String, Leaf)>,
     out: BufWriter<Box<dyn Write>>,
     line: String,
+    /// One value before it is quoted; both buffers keep their memory.
+    cell: String,
 }
 
 impl std::fmt::Debug for Trace {
@@ -36,10 +38,12 @@ impl Trace {
         let out: Box<dyn Write> = if path == Path::new("-") {
             Box::new(std::io::stdout())
         } else {
-            let file = std::fs::File::create(path).map_err(|e| format!("cannot write trace `{}`: {e}", path.display()))?;
+            let file =
+                std::fs::File::create(path).map_err(|e| format!("cannot write trace `{}`: {e}", path.display()))?;
             Box::new(file)
         };
-        let mut trace = Self { columns, out: BufWriter::with_capacity(1 << 16, out), line: String::new() };
+        let mut trace =
+            Self { columns, out: BufWriter::with_capacity(1 << 16, out), line: String::new(), cell: String::new() };
         trace.line.push_str("cycle");
         for (name, _) in &trace.columns {
             trace.line.push(',');
@@ -55,7 +59,9 @@ impl Trace {
         let _ = write!(self.line, "{cycle}");
         for (_, leaf) in &self.columns {
             self.line.push(',');
-            field(&mut self.line, &resolver.text(leaf, mem));
+            self.cell.clear();
+            resolver.write(leaf, mem, &mut self.cell);
+            field(&mut self.line, &self.cell);
         }
         self.end_line()
     }
@@ -90,5 +96,28 @@ fn field(line: &mut String, text: &str) {
         line.push('"');
     } else {
         line.push_str(text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_quoted_where_they_must_be() {
+        let quoted = |text: &str| {
+            let mut line = String::new();
+            field(&mut line, text);
+            line
+        };
+        assert_eq!(quoted("T#5s"), "T#5s");
+        assert_eq!(quoted("Main.m[1,2]"), "\"Main.m[1,2]\"");
+        assert_eq!(quoted("'say \"x\"'"), "\"'say \"\"x\"\"'\"");
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_no_mistake() {
+        assert_eq!(tolerate(Err(ErrorKind::BrokenPipe.into())), Err(String::new()));
+        assert!(tolerate(Err(ErrorKind::StorageFull.into())).unwrap_err().contains("cannot write the trace"));
     }
 }

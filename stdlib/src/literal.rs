@@ -82,7 +82,7 @@ pub enum LiteralError {
         range: (u32, u32),
     },
     /// `$00`: a string holds no character 0.
-    Nul {
+    NulCharacter {
         /// Where.
         at: usize,
     },
@@ -123,7 +123,7 @@ impl LiteralError {
             | BadBase { at }
             | Underscore { at }
             | BadField { at, .. }
-            | Nul { at }
+            | NulCharacter { at }
             | BadEscape { at }
             | NotLatin1 { at, .. }
             | Malformed { at, .. } => Some(*at),
@@ -146,7 +146,7 @@ impl LiteralError {
                 };
                 Some(format!("write `{meant}`"))
             }
-            LiteralError::Nul { .. } => Some("end the string before it, or set its length".to_string()),
+            LiteralError::NulCharacter { .. } => Some("end the string before it, or set its length".to_string()),
             LiteralError::NotLatin1 { .. } => Some("use a WSTRING: \"...\"".to_string()),
             _ => None,
         }
@@ -174,7 +174,7 @@ impl fmt::Display for LiteralError {
             BadBase { .. } => f.write_str("the base of a number is 2, 8 or 16"),
             Underscore { .. } => f.write_str("an underscore stands between two digits"),
             BadField { field, range: (min, max), .. } => write!(f, "the {field} is {min} to {max}"),
-            Nul { .. } => f.write_str("a string cannot hold the character 0"),
+            NulCharacter { .. } => f.write_str("a string cannot hold the character 0"),
             BadEscape { .. } => f.write_str(
                 "`$` stands before $, ', \", L, N, P, R, T or the hexadecimal code of a character \
                  (two digits, four in a WSTRING)",

@@ -9,7 +9,10 @@ use std::fmt::Write;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ty {
     Bool,
-    Int { bits: u32, signed: bool },
+    Int {
+        bits: u32,
+        signed: bool,
+    },
     Bits(u32),
     Real,
     Lreal,
@@ -615,7 +618,11 @@ impl Generator {
             },
             Ty::Small => {
                 let value = self.expr(Ty::Int { bits: 16, signed: true }, d);
-                if self.faults && self.chance(20) { format!("i{}", self.rng.u32(0..3)) } else { format!("LIMIT(-5, {value}, 20)") }
+                if self.faults && self.chance(20) {
+                    format!("i{}", self.rng.u32(0..3))
+                } else {
+                    format!("LIMIT(-5, {value}, 20)")
+                }
             }
         }
     }
@@ -661,11 +668,7 @@ impl Generator {
             5 | 6 => {
                 let op = ["/", "MOD"][self.rng.usize(0..2)];
                 let variable = if self.faults && self.chance(10) { self.variable(ty) } else { None };
-                let divisor = if let Some(text) = variable {
-                    text
-                } else {
-                    format!("{name}#{}", self.rng.u32(1..9))
-                };
+                let divisor = if let Some(text) = variable { text } else { format!("{name}#{}", self.rng.u32(1..9)) };
                 format!("({} {op} {divisor})", self.expr(ty, d))
             }
             7 => match ty {
@@ -766,7 +769,8 @@ fn standard_block(n: usize) -> Block {
     let bool = Ty::Bool;
     let int = Ty::Int { bits: 16, signed: true };
     let names = |list: &[(&str, Ty)]| list.iter().map(|(n, t)| (n.to_string(), *t)).collect();
-    let (name, inputs, outputs): (&str, Vec<(String, Ty)>, Vec<(String, Ty)>) = match n {
+    type Parameters = Vec<(String, Ty)>;
+    let (name, inputs, outputs): (&str, Parameters, Parameters) = match n {
         0 => ("TON", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
         1 => ("TOF", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),
         2 => ("TP", names(&[("IN", bool), ("PT", Ty::Time)]), names(&[("Q", bool), ("ET", Ty::Time)])),

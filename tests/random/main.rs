@@ -161,7 +161,9 @@ fn linked_batches_agree_with_the_interpreter() {
         let mut taken = 0;
         while taken < size {
             let alone = source(&generate::program(seed, "", false));
-            if deep(|| both_engines(&alone)).unwrap_or_else(|e| panic!("seed {seed}: {e}\n{alone}")) == Outcome::Finished {
+            if deep(|| both_engines(&alone)).unwrap_or_else(|e| panic!("seed {seed}: {e}\n{alone}"))
+                == Outcome::Finished
+            {
                 let prefix = format!("P{taken}_");
                 text.push_str(&generate::program(seed, &prefix, false));
                 instances.push_str(&format!("  PROGRAM I{taken} WITH T : {prefix}Main;\n"));

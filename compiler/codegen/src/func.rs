@@ -22,6 +22,10 @@ use rustc_hash::FxHashMap;
 /// Up to so many labels a chain of comparisons beats a jump table.
 const CHAIN_LABELS: usize = 4;
 
+/// So many faults share the code that writes the record: a block with thousands of predecessors costs the register
+/// allocator quadratic time.
+const FAULTS_PER_TAIL: usize = 32;
+
 /// What all functions of a program share while they are translated.
 pub struct Env<'a> {
     /// The program.
@@ -66,6 +70,14 @@ pub fn import(func: &mut ir::Function, id: cranelift_module::FuncId, signature: 
     func.import_function(ExtFuncData { name: ExternalName::user(name), signature, colocated, patchable: false })
 }
 
+/// Blocks at the end of the function, where ways meet that leave it.
+#[derive(Default)]
+struct Tails {
+    blocks: Vec<ir::Block>,
+    /// Ways into the last one.
+    ways: usize,
+}
+
 /// The walk over one function.
 pub struct Translator<'a, 'f> {
     pub(crate) env: &'a Env<'a>,
@@ -79,10 +91,10 @@ pub struct Translator<'a, 'f> {
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
     rt_callees: FxHashMap<&'static str, FuncRef>,
-    /// Writes the fault record and leaves; parameters: number, source, three operands.
-    fault: Option<ir::Block>,
-    /// Leaves with the status of a callee.
-    leave: Option<ir::Block>,
+    /// Write the fault record and leave; parameters: number, source, three operands.
+    fault: Tails,
+    /// Leave with the status of a callee, the parameter.
+    leave: Tails,
 }
 
 impl<'a, 'f> Translator<'a, 'f> {
@@ -105,8 +117,8 @@ impl<'a, 'f> Translator<'a, 'f> {
             blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
             callees: FxHashMap::default(),
             rt_callees: FxHashMap::default(),
-            fault: None,
-            leave: None,
+            fault: Tails::default(),
+            leave: Tails::default(),
             b,
         }
     }
@@ -141,8 +153,15 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn finish(mut self) {
-        self.fault_block_body();
-        self.leave_block_body();
+        self.b.set_srcloc(SourceLoc::default());
+        for block in std::mem::take(&mut self.fault.blocks) {
+            self.fault_body(block);
+        }
+        for block in std::mem::take(&mut self.leave.blocks) {
+            self.b.switch_to_block(block);
+            let status = self.b.block_params(block)[0];
+            self.return_with_status(status);
+        }
         self.b.seal_all_blocks();
         self.b.finalize(self.env.config);
     }
@@ -267,16 +286,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn leave_with_fault(&mut self, block: ir::Block, fault: Fault, source: SourceId, operands: &[Value]) {
-        let tail = match self.fault {
-            Some(block) => block,
-            None => {
-                let tail = self.cold_block();
-                for ty in [types::I32, types::I32, types::I64, types::I64, types::I64] {
-                    self.b.append_block_param(tail, ty);
-                }
-                *self.fault.insert(tail)
-            }
-        };
+        let tail = tail(&mut self.b, &mut self.fault, &[types::I32, types::I32, types::I64, types::I64, types::I64]);
         if self.b.current_block() != Some(block) {
             self.b.switch_to_block(block);
         }
@@ -291,9 +301,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.b.ins().jump(tail, &args);
     }
 
-    fn fault_block_body(&mut self) {
-        let Some(block) = self.fault else { return };
-        self.b.set_srcloc(SourceLoc::default());
+    fn fault_body(&mut self, block: ir::Block) {
         self.b.switch_to_block(block);
         let params = self.b.block_params(block).to_vec();
         let instance = match self.instance {
@@ -316,14 +324,6 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.return_with_status(params[0]);
     }
 
-    fn leave_block_body(&mut self) {
-        let Some(block) = self.leave else { return };
-        self.b.set_srcloc(SourceLoc::default());
-        self.b.switch_to_block(block);
-        let status = self.b.block_params(block)[0];
-        self.return_with_status(status);
-    }
-
     fn return_with_status(&mut self, status: Value) {
         let mut results = vec![status];
         if let Some(repr) = self.func.result {
@@ -333,14 +333,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn leave_block(&mut self) -> ir::Block {
-        match self.leave {
-            Some(block) => block,
-            None => {
-                let block = self.cold_block();
-                self.b.append_block_param(block, types::I32);
-                *self.leave.insert(block)
-            }
-        }
+        tail(&mut self.b, &mut self.leave, &[types::I32])
     }
 
     fn call(
@@ -487,6 +480,24 @@ impl<'a, 'f> Translator<'a, 'f> {
         let edge = self.b.create_block();
         edges.push((edge, block, self.args(target)));
         edge
+    }
+}
+
+/// The tail for one more way.
+fn tail(b: &mut FunctionBuilder, tails: &mut Tails, params: &[ir::Type]) -> ir::Block {
+    tails.ways += 1;
+    match tails.blocks.last() {
+        Some(block) if tails.ways <= FAULTS_PER_TAIL => *block,
+        _ => {
+            let block = b.create_block();
+            b.set_cold_block(block);
+            for ty in params {
+                b.append_block_param(block, *ty);
+            }
+            tails.blocks.push(block);
+            tails.ways = 1;
+            block
+        }
     }
 }
 

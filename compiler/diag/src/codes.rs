@@ -148,6 +148,10 @@ Correct the first ones and compile again.\n";
     BAD_ASSOCIATION "E0124" Error "an action association is not well formed" "\
 A step lists its actions as `name(qualifier, time, indicators);`. Only the name is required; without a qualifier it means N.\n\n```st\nPROGRAM Main\nVAR b : BOOL; END_VAR\nINITIAL_STEP S1: b(1 + 2); END_STEP\nTRANSITION FROM S1 TO S1 := TRUE; END_TRANSITION\nEND_PROGRAM\n```\n\n\
 Write for example `b(N);` or `b(L, T#5s);`.\n";
+    MISSPELLED "E0125" Error "a reserved word is misspelled" "\
+A word that differs by one letter from a reserved word stands where only that reserved word makes sense.\n\n\
+```st\nPROGRAM Main\nVAR x : INT; END_VAR\nIF x > 0 THNE\n  x := 0;\nEND_IF;\nEND_PROGRAM\n```\n\n\
+Write the reserved word.\n";
     OPTIONAL_SEMICOLON "H0101" Hint "no `;` behind END_IF and its kind" "\
 The standard ends every statement with `;`, also behind END_IF, END_CASE, END_FOR, END_WHILE and END_REPEAT. plcc does without.\n\n```st\nPROGRAM Main\nVAR x : INT; END_VAR\nIF x > 0 THEN\n  x := 0;\nEND_IF\nx := 1;\nEND_PROGRAM\n```\n\n\
 Write `END_IF;` for other tools.\n";
@@ -259,13 +263,6 @@ FUNCTION F : INT\n\
 F := 1;\n\
 ACTION Act : F := 2; END_ACTION\n\
 END_FUNCTION\n\
-```\n";
-    RESULT_TYPE "E0212" Error "a result type where none can be" "\
-Only a FUNCTION has a result.\n\
-\n\
-```st\n\
-FUNCTION_BLOCK Fb : INT\n\
-END_FUNCTION_BLOCK\n\
 ```\n";
     BAD_ADDRESS "E0213" Error "an address is wrong" "\
 A located variable is declared `AT %` with an area (I, Q, M), a size (X B W D L) and a number; for X a bit may follow. The number counts units of its own size: `%MW1` is bytes 2 and 3.\n\
@@ -618,7 +615,7 @@ A statement assigns (`:=`), calls or controls. `=` compares.\n\
 ```st\n\
 PROGRAM Main\n\
 VAR x : INT; END_VAR\n\
-x = 5;\n\
+x + 5;\n\
 END_PROGRAM\n\
 ```\n";
     CASE_LABEL "E0333" Error "a CASE label is wrong" "\
@@ -768,6 +765,15 @@ CASE t OF\n\
 \x20 Cold: x := 1;\n\
 \x20 Warm: x := 2;\n\
 END_CASE;\n\
+END_PROGRAM\n\
+```\n";
+    TEXTBOOK_PIN "H0350" Hint "a pin has another name in the standard" "\
+SR has the pins S1, R, Q1 and RS has S, R1, Q1: the 1 marks the dominant input. Textbooks write S, R and Q; plcc takes them too.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR latch : SR; b : BOOL; END_VAR\n\
+latch(S := b, R := FALSE);\n\
 END_PROGRAM\n\
 ```\n";
     // ---- E05xx: configuration and project ----

@@ -10,7 +10,8 @@ pub fn page(name: &str) -> Result<String, Failure> {
         return Ok(format!("{}: {}\n\n{}", info.code, info.title, info.page));
     }
     if let Some(func) = funcs::find(&upper) {
-        let clause = if func.clause.is_empty() { String::new() } else { format!("\nStandard: IEC 61131-3 {}.\n", func.clause) };
+        let clause =
+            if func.clause.is_empty() { String::new() } else { format!("\nStandard: IEC 61131-3 {}.\n", func.clause) };
         return Ok(format!("{}\n\n{}\n{clause}", func.signature(), func.doc));
     }
     if let Some(text) = block(&upper) {

@@ -114,7 +114,11 @@ pub fn variables(image: &Image) -> Vec<TableVar> {
                     (Elem::from_code(*code).map_or(0, Elem::bytes), u16::from(*code))
                 }
                 TypeDesc::String { wide, capacity } => {
-                    if *wide { (2 * (capacity + 1), 0x41) } else { (capacity + 1, 0x40) }
+                    if *wide {
+                        (2 * (capacity + 1), 0x41)
+                    } else {
+                        (capacity + 1, 0x40)
+                    }
                 }
                 _ => (4, 0x42),
             };

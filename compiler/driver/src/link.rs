@@ -41,9 +41,8 @@ pub fn executable(object: &[u8], runtime: Option<&Path>, output: &Path) -> Resul
     // What cannot be written is said before the linker says it in its own words.
     let partial = partial_name(output);
     std::fs::write(&partial, b"").map_err(|e| Failure::io("write", output, e))?;
-    let result = link_to(object, runtime, &partial).and_then(|()| {
-        std::fs::rename(&partial, output).map_err(|e| Failure::io("write", output, e))
-    });
+    let result = link_to(object, runtime, &partial)
+        .and_then(|()| std::fs::rename(&partial, output).map_err(|e| Failure::io("write", output, e)));
     if result.is_err() {
         let _ = std::fs::remove_file(&partial);
     }

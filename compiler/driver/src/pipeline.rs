@@ -28,8 +28,11 @@ pub struct Compiled {
     pub image: Image,
 }
 
+/// Project, texts, and the profile of each of the user's files.
+pub type Loaded = (Project, SourceMap, Vec<(FileId, Profile)>);
+
 /// load: project and paths to texts.
-pub fn load(args: &SourceArgs) -> Result<(Project, SourceMap, Vec<(FileId, Profile)>), Failure> {
+pub fn load(args: &SourceArgs) -> Result<Loaded, Failure> {
     let project = project::load(args)?;
     let mut sources = SourceMap::new();
     let mut ids = Vec::new();
@@ -72,19 +75,29 @@ pub fn compile(
     project: &Project,
     parsed: &Parsed,
     code: &CodeArgs,
+    all: bool,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
-    let (program, layout) = plcc_mir::lower::lower(&checked.defs, app, 0, checks, false)
-        .map_err(|e| too_large(e, &parsed.sources))?;
+    let (program, layout) =
+        plcc_mir::lower::lower(&checked.defs, app, 0, checks, all).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
-        plcc_diag::bug!("the verifier found:\n{}\n{}",
+        plcc_diag::bug!(
+            "the verifier found:\n{}\n{}",
             problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
             plcc_mir::print::program(&program, None)
         );
     }
     let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
     Ok(Compiled { program, image })
+}
+
+/// Whether the variables fit into memory, for `check`, which generates no code.
+pub fn fits(checked: &Checked, parsed: &Parsed) -> Result<(), Failure> {
+    match &checked.app {
+        Some(app) => plcc_mir::lower::fits(&checked.defs, app, 0).map_err(|e| too_large(e, &parsed.sources)),
+        None => Ok(()),
+    }
 }
 
 /// The variables do not fit: the one mistake that shows only after checking.

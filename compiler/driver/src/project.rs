@@ -25,8 +25,6 @@ pub struct Project {
     pub safe_state: Vec<(String, String)>,
     /// `[retain] file`.
     pub retain_file: Option<PathBuf>,
-    /// The folder of project.toml; outputs it names are relative to the current folder.
-    pub root: PathBuf,
 }
 
 /// `[build]`.
@@ -124,7 +122,7 @@ pub fn load(args: &SourceArgs) -> Result<Project, Failure> {
     let mut project = match args.files.as_slice() {
         [one] if one.ends_with(".toml") => from_file(Path::new(one), args.profile)?,
         files => {
-            let mut project = Project { root: PathBuf::from("."), ..Project::default() };
+            let mut project = Project::default();
             for file in files {
                 if file.ends_with(".toml") {
                     return Err(Failure::usage("give either one project.toml or source files, not both"));
@@ -152,7 +150,7 @@ fn from_file(path: &Path, flag: Option<ProfileArg>) -> Result<Project, Failure> 
     let text = std::fs::read_to_string(path).map_err(|e| Failure::io("read", path, e))?;
     let file: File = toml::from_str(&text).map_err(|e| bad_toml(path, &e))?;
     let root = path.parent().map(Path::to_path_buf).unwrap_or_default();
-    let mut project = Project { name: file.project.name, build: file.build, root: root.clone(), ..Project::default() };
+    let mut project = Project { name: file.project.name, build: file.build, ..Project::default() };
     for pattern in &file.project.sources {
         // The flag speaks of the user's sources; a library keeps the profile it was written for.
         add_sources(&mut project, &root, pattern, profile(flag.or(file.project.profile)))?;
@@ -244,7 +242,11 @@ fn folder(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         }
     }
     if found.is_empty() {
-        return Err(Failure::device(format!("no sources ({}) in `{}`", TEXT.map(|t| format!(".{t}")).join(" "), path.display())));
+        return Err(Failure::device(format!(
+            "no sources ({}) in `{}`",
+            TEXT.map(|t| format!(".{t}")).join(" "),
+            path.display()
+        )));
     }
     found.sort();
     Ok(found)

@@ -57,11 +57,14 @@ fn short(d: &Diagnostic, sources: &SourceMap) -> String {
 fn summary(list: &[&Diagnostic]) -> String {
     let count = |s| list.iter().filter(|d| d.severity() == s).count();
     let part = |n: usize, what: &str| (n > 0).then(|| format!("{n} {what}{}", if n == 1 { "" } else { "s" }));
-    let parts: Vec<String> =
-        [part(count(Severity::Error), "error"), part(count(Severity::Warning), "warning"), part(count(Severity::Hint), "hint")]
-            .into_iter()
-            .flatten()
-            .collect();
+    let parts: Vec<String> = [
+        part(count(Severity::Error), "error"),
+        part(count(Severity::Warning), "warning"),
+        part(count(Severity::Hint), "hint"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
     if parts.is_empty() { String::new() } else { format!("{}\n", parts.join(", ")) }
 }
 
@@ -76,17 +79,29 @@ fn human(list: &[&Diagnostic], sources: &SourceMap, color: bool) -> String {
             Severity::Hint => cs::Severity::Help,
         };
         let range = |s: Span| s.start as usize..s.end as usize;
-        let mut labels = vec![cs::Label::primary(d.primary.span.file, range(d.primary.span)).with_message(&d.primary.text)];
-        labels.extend(d.secondary.iter().map(|l| cs::Label::secondary(l.span.file, range(l.span)).with_message(&l.text)));
+        let mut labels =
+            vec![cs::Label::primary(d.primary.span.file, range(d.primary.span)).with_message(&d.primary.text)];
+        labels
+            .extend(d.secondary.iter().map(|l| cs::Label::secondary(l.span.file, range(l.span)).with_message(&l.text)));
         let diagnostic = cs::Diagnostic::new(severity)
             .with_code(d.code.to_string())
             .with_message(&d.message)
             .with_labels(labels)
             .with_notes(d.help.iter().map(|h| format!("help: {h}")).collect());
         let done = if color {
-            term::emit_to_write_style(&mut codespan_reporting::term::termcolor::Ansi::new(&mut out), &config, &files, &diagnostic)
+            term::emit_to_write_style(
+                &mut codespan_reporting::term::termcolor::Ansi::new(&mut out),
+                &config,
+                &files,
+                &diagnostic,
+            )
         } else {
-            term::emit_to_write_style(&mut codespan_reporting::term::termcolor::NoColor::new(&mut out), &config, &files, &diagnostic)
+            term::emit_to_write_style(
+                &mut codespan_reporting::term::termcolor::NoColor::new(&mut out),
+                &config,
+                &files,
+                &diagnostic,
+            )
         };
         if done.is_err() {
             out.extend_from_slice(short(d, sources).as_bytes());
@@ -110,13 +125,14 @@ fn json_message(d: &Diagnostic, sources: &SourceMap) -> Value {
         "message": d.message,
         "help": d.help,
     });
-    let label = |l: &plcc_diag::Label| {
-        let mut v = place(l.span, sources);
-        v["text"] = json!(l.text);
-        v
-    };
-    value["primary"] = label(&d.primary);
-    value["secondary"] = d.secondary.iter().map(label).collect();
+    value["primary"] = json_label(&d.primary, sources);
+    value["secondary"] = d.secondary.iter().map(|l| json_label(l, sources)).collect();
+    value
+}
+
+fn json_label(label: &plcc_diag::Label, sources: &SourceMap) -> Value {
+    let mut value = place(label.span, sources);
+    value["text"] = json!(label.text);
     value
 }
 

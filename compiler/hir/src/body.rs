@@ -37,6 +37,8 @@ pub struct Stmt {
 }
 
 /// The forms of a statement.
+// A loop's bounds are large; statements stand in vectors that are walked once, boxes would only add a hop.
+#[allow(clippy::large_enum_variant)]
 #[derive(Debug, Clone)]
 pub enum StmtKind {
     /// `target := value`; both of the same type after conversion (strings may differ in capacity).

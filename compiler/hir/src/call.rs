@@ -376,7 +376,8 @@ impl<'a> Checker<'_, 'a> {
     }
 
     fn parameter(&mut self, pou: PouId, name: &ast::Name, given: &mut FxHashMap<VarId, Span>) -> Option<VarId> {
-        let found = match self.cx.pou_slots[pou].scope.get(&fold(&name.text)) {
+        let key = self.pin_name(pou, name);
+        let found = match self.cx.pou_slots[pou].scope.get(&key) {
             Some(Local::Var(var)) => Some(*var),
             _ => None,
         };

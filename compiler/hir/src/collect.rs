@@ -258,19 +258,14 @@ fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
 }
 
 fn declare_vars<'a>(cx: &mut Cx<'a>, id: PouId, pou: &'a ast::Pou) {
-    if pou.kind == ast::PouKind::Function {
-        if let Some(result) = &pou.result {
-            let name = pou.name.text.clone();
-            let var = new_var(cx, name.clone(), pou.name.span, Section::Result, Some(id), Some((result, None)));
-            cx.defs.pous[id].result = Some(var);
-            cx.defs.pous[id].vars.push(var);
-            cx.pou_slots[id].scope.insert(fold(&name), Local::Var(var));
-        }
-    } else if let Some(result) = &pou.result {
-        cx.push(
-            Diagnostic::new(codes::RESULT_TYPE, result.span, "only a FUNCTION has a result type")
-                .help("declare a VAR_OUTPUT instead"),
-        );
+    if pou.kind == ast::PouKind::Function
+        && let Some(result) = &pou.result
+    {
+        let name = pou.name.text.clone();
+        let var = new_var(cx, name.clone(), pou.name.span, Section::Result, Some(id), Some((result, None)));
+        cx.defs.pous[id].result = Some(var);
+        cx.defs.pous[id].vars.push(var);
+        cx.pou_slots[id].scope.insert(fold(&name), Local::Var(var));
     }
     for section in &pou.sections {
         let place = match section.kind {
@@ -377,8 +372,10 @@ fn declare_external<'a>(cx: &mut Cx<'a>, id: PouId, decl: &'a ast::VarDecl) {
                             .also(first, "the global variable is declared here")
                             .help("declare it with the same type"),
                     );
+                    Local::Missing
+                } else {
+                    Local::External(global)
                 }
-                Local::External(global)
             }
             None => {
                 let hint = similar(&name.text, cx.globals.keys().map(SmolStr::as_str));

@@ -173,7 +173,7 @@ fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<
         let resource = resource(cx, decl);
         app.resources.push(resource);
     }
-    if app.resources.iter().all(|r| r.programs.is_empty()) {
+    if config.resources.iter().all(|r| r.programs.is_empty()) {
         cx.push(
             Diagnostic::new(codes::NO_PROGRAM, config.name.span, "this CONFIGURATION runs no program")
                 .help("add `PROGRAM P1 WITH Task1 : Main;`"),

@@ -17,12 +17,11 @@ pub(crate) fn containment(cx: &mut Cx) {
     let mut done: FxHashMap<PouId, bool> = FxHashMap::default();
     for root in cx.defs.pous.indices() {
         // An explicit stack: chains of blocks may be long.
-        let mut stack: Vec<(PouId, Vec<(PouId, VarId)>, usize)> = Vec::new();
         if done.contains_key(&root) {
             continue;
         }
         done.insert(root, false);
-        stack.push((root, edges(cx, root), 0));
+        let mut stack = vec![(root, edges(cx, root), 0)];
         while let Some((pou, list, next)) = stack.last_mut() {
             let Some(&(child, var)) = list.get(*next) else {
                 done.insert(*pou, true);

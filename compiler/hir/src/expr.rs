@@ -180,7 +180,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                 (Some(from), Some(elem)) => {
                     let expr = self.convert(expr, from, elem, ty, target, span);
                     match to {
-                        Type::Subrange { low, high, .. } => self.into_subrange(expr, ty, low, high, target, span),
+                        Type::Subrange { low, high, .. } => self.narrowed_to(expr, ty, low, high, target, span),
                         _ => expr,
                     }
                 }
@@ -262,7 +262,7 @@ impl<'c, 'a> Checker<'c, 'a> {
         }
     }
 
-    fn into_subrange(&mut self, expr: Expr, from: TypeId, low: i128, high: i128, target: TypeId, span: Span) -> Expr {
+    fn narrowed_to(&mut self, expr: Expr, from: TypeId, low: i128, high: i128, target: TypeId, span: Span) -> Expr {
         if let Type::Subrange { low: l, high: h, .. } = self.cx.defs.types.get(from)
             && *l >= low
             && *h <= high
@@ -518,6 +518,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                         let mask = self.cx.defs.enums[*id].base.repr().mask();
                         Operand::value(ExprKind::Const(*number as u64 & mask), ty, name.span)
                     }
+                    _ if !self.cx.first_report(self.scope, &format!("value {}", name.text)) => Operand::Error,
                     _ => {
                         let names: Vec<String> = values
                             .iter()

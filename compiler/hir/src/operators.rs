@@ -61,7 +61,7 @@ impl<'a> Checker<'_, 'a> {
                     _ => return self.no_operator("-", ty, span, "it needs a number or a duration"),
                 };
                 let wide = self.width(signed, span);
-                let arg = self.to_elem(expr, wide, span);
+                let arg = self.with_elem(expr, wide, span);
                 let kind = ExprKind::Op(Op::Neg, wide, vec![arg]);
                 let static_ty = if signed == elem { base_type(&self.cx.defs, ty) } else { Types::elem(signed) };
                 Operand::Value { expr: Expr { kind, ty: Types::elem(wide), span }, ty: static_ty }
@@ -93,7 +93,7 @@ impl<'a> Checker<'_, 'a> {
         match self.elem_of(ty) {
             Some(elem) if elem == Elem::Bool || elem.is_bits() => {
                 let wide = self.width(elem, span);
-                let arg = self.to_elem(expr, wide, span);
+                let arg = self.with_elem(expr, wide, span);
                 let kind = ExprKind::Op(Op::Not, wide, vec![arg]);
                 Operand::Value { expr: Expr { kind, ty: Types::elem(wide), span }, ty: base_type(&self.cx.defs, ty) }
             }
@@ -103,7 +103,7 @@ impl<'a> Checker<'_, 'a> {
                     return Operand::Error;
                 }
                 let wide = self.width(elem, span);
-                let arg = self.to_elem(expr, wide, span);
+                let arg = self.with_elem(expr, wide, span);
                 let kind = ExprKind::Op(
                     Op::Xor,
                     bits_of(wide),
@@ -138,7 +138,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// An expression of elementary type as another one, without judging whether that is allowed.
-    pub fn to_elem(&mut self, expr: Expr, elem: Elem, span: Span) -> Expr {
+    pub fn with_elem(&mut self, expr: Expr, elem: Elem, span: Span) -> Expr {
         let ty = Types::elem(elem);
         match self.elem_of(expr.ty) {
             None => expr,
@@ -278,8 +278,8 @@ impl<'a> Checker<'_, 'a> {
         }
         let wide = self.width(common, span);
         let work = if wide == common { work } else { bits_of(wide) };
-        let a = self.to_elem(a, wide, sides[0]);
-        let b = self.to_elem(b, wide, sides[1]);
+        let a = self.with_elem(a, wide, sides[0]);
+        let b = self.with_elem(b, wide, sides[1]);
         let kind = ExprKind::Op(prim, work, vec![retype(a, Types::elem(work)), retype(b, Types::elem(work))]);
         let expr = retype(Expr { kind, ty: Types::elem(work), span }, Types::elem(wide));
         Operand::Value { expr, ty: Types::elem(common) }
@@ -296,7 +296,7 @@ impl<'a> Checker<'_, 'a> {
                 }
                 // `common` was chosen so that this conversion is legal.
                 let _ = ty;
-                self.to_elem(expr, common, span)
+                self.with_elem(expr, common, span)
             }
             constant => self.coerce(constant, span, Types::elem(common)),
         }
@@ -320,6 +320,7 @@ impl<'a> Checker<'_, 'a> {
         Operand::Error
     }
 
+    #[allow(clippy::too_many_arguments)]
     fn arithmetic(
         &mut self,
         op: BinaryOp,
@@ -373,8 +374,8 @@ impl<'a> Checker<'_, 'a> {
         if a.ty == Types::ERROR || b.ty == Types::ERROR {
             return Operand::Error;
         }
-        let a = self.to_elem(a, wide, sides[0]);
-        let b = self.to_elem(b, wide, sides[1]);
+        let a = self.with_elem(a, wide, sides[0]);
+        let b = self.with_elem(b, wide, sides[1]);
         let prim = match op {
             BinaryOp::Add => Op::Add,
             BinaryOp::Sub => Op::Sub,
@@ -565,7 +566,7 @@ impl<'a> Checker<'_, 'a> {
         if op == Op::TimeDiv && by != Elem::Lreal && matches!(factor.kind, ExprKind::Const(0)) {
             return self.zero_divisor(sides[1]);
         }
-        let factor = self.to_elem(factor, by, sides[1]);
+        let factor = self.with_elem(factor, by, sides[1]);
         Operand::value(ExprKind::Op(op, by, vec![time, factor]), ty, span)
     }
 
@@ -658,8 +659,8 @@ impl<'a> Checker<'_, 'a> {
             (Some(x), _) => x,
             _ => common,
         };
-        a = self.to_elem(a, wide, sides[0]);
-        b = self.to_elem(b, wide, sides[1]);
+        a = self.with_elem(a, wide, sides[0]);
+        b = self.with_elem(b, wide, sides[1]);
         if equality && wide.is_real() {
             let zero = |e: &Expr, untyped: bool| untyped && matches!(e.kind, ExprKind::Const(0));
             if !zero(&a, untyped_a) && !zero(&b, untyped_b) {
@@ -746,8 +747,8 @@ impl<'a> Checker<'_, 'a> {
         if a.ty == Types::ERROR || b.ty == Types::ERROR {
             return Operand::Error;
         }
-        let a = self.to_elem(a, base, sides[0]);
-        let b = self.to_elem(b, base, sides[1]);
+        let a = self.with_elem(a, base, sides[0]);
+        let b = self.with_elem(b, base, sides[1]);
         Operand::value(ExprKind::Op(Op::Power, base, vec![a, b]), Types::elem(base), span)
     }
 }

@@ -8,6 +8,7 @@ use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
+use smol_str::SmolStr;
 
 /// What a name means where it stands.
 #[derive(Debug, Clone, Copy)]
@@ -199,7 +200,8 @@ impl<'a> Checker<'_, 'a> {
                 (base.ty != Types::ERROR).then_some(base)
             }
             Type::Instance(pou) => {
-                let found = self.cx.pou_slots[pou].scope.get(&fold(&name.text)).copied();
+                let key = self.pin_name(pou, name);
+                let found = self.cx.pou_slots[pou].scope.get(&key).copied();
                 let Some(Local::Var(var)) = found else {
                     let names = self.cx.defs.pous[pou].vars.iter().map(|v| &self.cx.defs.vars[*v]);
                     let names = names.filter(|v| matches!(v.section, Section::Input | Section::Output));
@@ -254,6 +256,25 @@ impl<'a> Checker<'_, 'a> {
                 None
             }
         }
+    }
+
+    /// The folded name of a parameter. The bistables also take the pins of textbooks, `S`, `R` and `Q`, with a note
+    /// (semantics.md \[B1\]).
+    pub fn pin_name(&mut self, pou: PouId, name: &ast::Name) -> SmolStr {
+        let key = fold(&name.text);
+        let def = &self.cx.defs.pous[pou];
+        if !def.builtin {
+            return key;
+        }
+        let standard = match (def.name.as_str(), key.as_str()) {
+            ("SR", "S") => "S1",
+            ("RS", "R") => "R1",
+            ("SR" | "RS", "Q") => "Q1",
+            _ => return key,
+        };
+        let message = format!("the standard calls this pin of {} `{standard}`", def.name);
+        self.report(Diagnostic::new(codes::TEXTBOOK_PIN, name.span, message).help(format!("write `{standard}`")));
+        standard.into()
     }
 
     fn index(&mut self, mut base: Place, indices: &'a [ast::Expr], span: Span) -> Option<Place> {
@@ -339,9 +360,9 @@ impl<'a> Checker<'_, 'a> {
                     let args = vec![retype(expr, Types::elem(elem)), limit];
                     let low =
                         Expr { kind: ExprKind::Op(plcc_stdlib::ops::Op::Min, elem, args), ty: Types::elem(elem), span };
-                    return Some(self.to_elem(low, Elem::Lint, span));
+                    return Some(self.with_elem(low, Elem::Lint, span));
                 }
-                Some(self.to_elem(expr, Elem::Lint, span))
+                Some(self.with_elem(expr, Elem::Lint, span))
             }
             Some(elem) if elem.is_bits() => {
                 if !self.codesys(span) {
@@ -354,8 +375,8 @@ impl<'a> Checker<'_, 'a> {
                     );
                 }
                 let number = crate::rules::as_number(elem);
-                let expr = self.to_elem(expr, number, span);
-                Some(self.to_elem(expr, Elem::Lint, span))
+                let expr = self.with_elem(expr, number, span);
+                Some(self.with_elem(expr, Elem::Lint, span))
             }
             _ if ty == Types::ERROR => None,
             _ => {

@@ -242,7 +242,7 @@ impl Printer<'_> {
             }
         }
         match crate::cx::elem_of(self.defs, ty) {
-            Some(elem) => plcc_stdlib::value::format_scalar(elem, raw),
+            Some(elem) => plcc_stdlib::value::Value::Scalar { elem, raw }.to_string(),
             None => format!("{}#{raw}", self.ty(ty)),
         }
     }

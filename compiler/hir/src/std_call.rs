@@ -244,7 +244,7 @@ impl<'a> Checker<'_, 'a> {
             let ty = expr.ty;
             return self.no_conversion(func, ty, at);
         }
-        let expr = Expr { span, ..self.to_elem(expr, to, span) };
+        let expr = Expr { span, ..self.with_elem(expr, to, span) };
         Operand::Value { expr, ty: target }
     }
 
@@ -274,9 +274,9 @@ impl<'a> Checker<'_, 'a> {
                 let limit = Expr { kind: ExprKind::Const(i64::MAX as u64), ty: Types::elem(elem), span: at };
                 let args = vec![retype(expr, Types::elem(elem)), limit];
                 let low = Expr { kind: ExprKind::Op(Op::Min, elem, args), ty: Types::elem(elem), span: at };
-                Some(self.to_elem(low, Elem::Lint, at))
+                Some(self.with_elem(low, Elem::Lint, at))
             }
-            Some(elem) if elem.is_integer() => Some(self.to_elem(expr, Elem::Lint, at)),
+            Some(elem) if elem.is_integer() => Some(self.with_elem(expr, Elem::Lint, at)),
             Some(elem) if elem.is_bits() => {
                 if !self.codesys(at) {
                     self.report(
@@ -284,8 +284,8 @@ impl<'a> Checker<'_, 'a> {
                             .help(format!("write {}(...)", rules::conversion_name(elem, rules::as_number(elem)))),
                     );
                 }
-                let expr = self.to_elem(expr, rules::as_number(elem), at);
-                Some(self.to_elem(expr, Elem::Lint, at))
+                let expr = self.with_elem(expr, rules::as_number(elem), at);
+                Some(self.with_elem(expr, Elem::Lint, at))
             }
             _ if expr.ty == Types::ERROR => None,
             _ => {
@@ -363,7 +363,7 @@ impl<'a> Checker<'_, 'a> {
         // Profile codesys shifts left in 32 bits; the others need the type's own width.
         let wide = if op == Op::Shl { self.width(elem, span) } else { elem };
         let expr =
-            if op == Op::Shl { self.to_elem(expr, wide, at) } else { self.settle(Operand::Value { expr, ty }, at) };
+            if op == Op::Shl { self.with_elem(expr, wide, at) } else { self.settle(Operand::Value { expr, ty }, at) };
         let bits = crate::operators::bits_of(wide);
         let kind = ExprKind::Op(op, bits, vec![retype(expr, Types::elem(bits)), count]);
         let expr = retype(Expr { kind, ty: Types::elem(bits), span }, Types::elem(wide));
@@ -403,7 +403,7 @@ impl<'a> Checker<'_, 'a> {
                 if self.elem_of(expr.ty).is_some_and(Elem::is_integer)
                     && self.codesys_only(at, codes::LAX_CONVERSION, strict.clone())
                 {
-                    let expr = self.to_elem(expr, to, span);
+                    let expr = self.with_elem(expr, to, span);
                     return Operand::Value { expr, ty: Types::elem(to) };
                 }
                 if !self.elem_of(expr.ty).is_some_and(Elem::is_integer) {

@@ -218,7 +218,9 @@ impl Layout {
                     work.extend(defs.structs[*id].fields.iter().map(|f| f.ty));
                 }
                 Type::Instance(id) if !std::mem::replace(&mut self.exposed[*id], true) => {
-                    work.extend(defs.pous[*id].vars.iter().map(|v| &defs.vars[*v]).filter(|v| in_instance(v)).map(|v| v.ty));
+                    work.extend(
+                        defs.pous[*id].vars.iter().map(|v| &defs.vars[*v]).filter(|v| in_instance(v)).map(|v| v.ty),
+                    );
                 }
                 _ => {}
             }
@@ -321,9 +323,8 @@ impl Placer<'_> {
             let bytes = self.layout.shapes.of(self.defs, var.ty).bytes;
             var.address.map(|a| (a, bytes, self.layout.is_addressable(self.defs, *id), Some(*id)))
         });
-        let direct = reach.addresses.iter().map(|a| {
-            (a.address, self.layout.shapes.of(self.defs, a.ty).bytes, a.taken, None)
-        });
+        let direct =
+            reach.addresses.iter().map(|a| (a.address, self.layout.shapes.of(self.defs, a.ty).bytes, a.taken, None));
         for (address, bytes, taken, var) in declared.chain(direct) {
             let bytes = if address.bit.is_some() { 1 } else { bytes };
             let end = u64::from(address.byte) + bytes;
@@ -439,17 +440,16 @@ impl Placer<'_> {
             let distance = if split.instances > 0 {
                 self.align(16)?;
                 let distance = self.cursor - split.start;
-                self.cursor += split.stride * split.instances;
-                self.align(16)?;
+                self.cursor += split.stride * (split.instances - 1) + split.addressable_bytes;
+                self.align(1)?;
                 distance
             } else {
                 split.stride
             };
             for &id in &self.defs.pous[split.pou].vars {
-                if in_instance(&self.defs.vars[id]) && self.layout.is_addressable(self.defs, id) {
-                    if let Some(Slot::Instance(offset)) = &mut self.layout.slots[id] {
-                        *offset += distance as u32;
-                    }
+                let moves = in_instance(&self.defs.vars[id]) && self.layout.is_addressable(self.defs, id);
+                if let (true, Some(Slot::Instance(offset))) = (moves, &mut self.layout.slots[id]) {
+                    *offset += distance as u32;
                 }
             }
         }

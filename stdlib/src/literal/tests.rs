@@ -129,12 +129,12 @@ fn strings() {
     assert_eq!(s("'$$$'$\"$l$N$p$R$t$41'").unwrap(), b"$'\"\n\n\x0C\r\tA");
     assert_eq!(s("''").unwrap(), b"");
     assert_eq!(s("'€'"), Err(NotLatin1 { found: '€', at: 1 }));
-    assert_eq!(s("'a$00b'"), Err(Nul { at: 2 }));
-    assert_eq!(string("'a$00b'", super::Nul::Ends).unwrap(), b"a");
+    assert_eq!(s("'a$00b'"), Err(NulCharacter { at: 2 }));
+    assert_eq!(string("'a$00b'", Nul::Ends).unwrap(), b"a");
     for bad in ["", "'", "'a", "a", "'$'", "'$4'", "'$x'", "'a'b'", "\"a\""] {
         assert!(s(bad).is_err(), "{bad}");
     }
-    let w = |t: &str| wstring(t, super::Nul::Error);
+    let w = |t: &str| wstring(t, Nul::Error);
     assert_eq!(w("\"a€$0041$20AC'\"").unwrap(), [0x61, 0x20AC, 0x41, 0x20AC, 0x27]);
     assert_eq!(w("\"😀\"").unwrap(), [0xD83D, 0xDE00]);
     assert!(w("\"$41\"").is_err());

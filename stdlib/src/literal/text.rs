@@ -61,7 +61,7 @@ fn units(
             let unit = u32::from_str_radix(hex, 16).map_err(|_| bad)?;
             if unit == 0 {
                 if nul == Nul::Error {
-                    return Err(LiteralError::Nul { at: shown });
+                    return Err(LiteralError::NulCharacter { at: shown });
                 }
                 end.get_or_insert(out.len());
             }

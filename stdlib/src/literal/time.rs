@@ -67,7 +67,7 @@ pub fn duration(text: &str) -> Result<i64, LiteralError> {
             return Err(LiteralError::UnitOverflow { at: number_at, limit });
         }
         first = false;
-        total += whole * i128::from(unit_ns) + fraction_ns(fraction, unit_ns);
+        total = with_fraction(total + whole * i128::from(unit_ns), fraction, unit_ns);
     }
     i64::try_from(if negative { -total } else { total }).map_err(|_| too_large)
 }
@@ -84,8 +84,8 @@ fn plain_number(text: &str) -> Option<i128> {
     Some(value)
 }
 
-/// `0.fraction` of a unit, nearest nanosecond, ties to even.
-fn fraction_ns(fraction: &str, unit_ns: i64) -> i128 {
+/// `ns` and `0.fraction` of a unit, to the nearest nanosecond, ties to even.
+fn with_fraction(ns: i128, fraction: &str, unit_ns: i64) -> i128 {
     const PLACES: u32 = 22;
     let mut value: i128 = 0;
     let mut places = 0;
@@ -100,7 +100,7 @@ fn fraction_ns(fraction: &str, unit_ns: i64) -> i128 {
     }
     let scale = 10i128.pow(places);
     let product = value * i128::from(unit_ns);
-    let (q, r) = (product / scale, product % scale);
+    let (q, r) = (ns + product / scale, product % scale);
     let up = 2 * r > scale || (2 * r == scale && (beyond || q % 2 == 1));
     q + i128::from(up)
 }
@@ -195,7 +195,7 @@ impl Fields<'_> {
             if self.text.as_bytes().get(self.at) == Some(&b'.') {
                 let start = self.at + 1;
                 self.at = digits(self.text.as_bytes(), start)?;
-                ns += fraction_ns(&self.text[start..self.at], 1_000_000_000);
+                ns = with_fraction(ns, &self.text[start..self.at], 1_000_000_000);
             }
         }
         Ok(ns)

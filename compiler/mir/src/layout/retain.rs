@@ -64,7 +64,7 @@ impl Walk<'_> {
         match &self.defs.types[ty] {
             Type::Array { elem, .. } => {
                 let stride = self.layout.size(self.defs, *elem);
-                let count = if stride == 0 { 0 } else { shape.bytes as u32 / stride };
+                let count = (shape.bytes as u32).checked_div(stride).unwrap_or(0);
                 for n in 0..count {
                     self.value(*elem, offset + n * stride, all);
                 }

@@ -146,8 +146,7 @@ impl Shapes {
             Init::WString(s) => s.iter().all(|c| *c == 0),
             Init::Array(runs) => {
                 let Type::Array { elem, .. } = &defs.types[ty] else { return false };
-                !self.of(defs, *elem).initialised
-                    && runs.iter().all(|(_, item)| self.init_is_zero(defs, *elem, item))
+                !self.of(defs, *elem).initialised && runs.iter().all(|(_, item)| self.init_is_zero(defs, *elem, item))
             }
             Init::Fields(_) => false,
         }
@@ -199,8 +198,7 @@ impl Shapes {
                     self.members[id] = Some(shape.push(part));
                     shape.address_taken |= address_taken(var);
                     shape.retain |= var.retain;
-                    shape.initialised |=
-                        var.section != Section::InOut && !self.init_is_zero(defs, var.ty, &var.init);
+                    shape.initialised |= var.section != Section::InOut && !self.init_is_zero(defs, var.ty, &var.init);
                 }
             }
         }

@@ -171,8 +171,7 @@ impl FuncLower<'_, '_> {
                     let stored_with_others = target.instance.is_some() && written.len() > 1;
                     if stored_with_others || written[n + 1..].iter().any(Written::calls) {
                         let temp = self.new_temp(e.ty);
-                        let bytes = self.cx.layout.size(self.defs, e.ty);
-                        self.b.copy(temp.clone(), place, bytes);
+                        self.copy_value(temp.clone(), e.ty, place, e.ty);
                         place = temp;
                     }
                     Argument::Aggregate(*var, place, e.ty)
@@ -197,9 +196,8 @@ impl FuncLower<'_, '_> {
                     self.store(&slot, value);
                 }
                 Argument::Aggregate(var, from, ty) => {
-                    let to = self.parameter(target, var).place;
-                    let bytes = self.cx.layout.size(self.defs, ty);
-                    self.b.copy(to, from, bytes);
+                    let to = self.parameter(target, var);
+                    self.copy_value(to.place, to.ty, from, ty);
                     stored.push(var);
                 }
             }
@@ -250,9 +248,8 @@ impl FuncLower<'_, '_> {
     fn results(&mut self, call: &Call, target: &Target, into: Option<&Place>) {
         if let (Callee::Function(pou), Some(to)) = (&call.callee, into) {
             let Some(result) = self.defs.pous[*pou].result else { bug!("the result of a function without one") };
-            let from = self.parameter(target, result).place;
-            let bytes = self.cx.layout.size(self.defs, self.defs.vars[result].ty);
-            self.b.copy(to.clone(), from, bytes);
+            let from = self.parameter(target, result);
+            self.copy_value(to.clone(), from.ty, from.place, from.ty);
         }
         let keep = call.outputs.iter().any(|o| place_calls(&o.target));
         let mut fetched = Vec::with_capacity(call.outputs.len());
@@ -276,8 +273,7 @@ impl FuncLower<'_, '_> {
             let mut place = from.place;
             if keep {
                 let temp = self.new_temp(from.ty);
-                let bytes = self.cx.layout.size(self.defs, from.ty);
-                self.b.copy(temp.clone(), place, bytes);
+                self.copy_value(temp.clone(), from.ty, place, from.ty);
                 place = temp;
             }
             fetched.push(Argument::Aggregate(output.output, place, from.ty));
@@ -287,8 +283,7 @@ impl FuncLower<'_, '_> {
             match value {
                 Argument::Scalar(_, value) => self.store(&to, value),
                 Argument::Aggregate(_, from, ty) => {
-                    let bytes = self.cx.layout.size(self.defs, ty);
-                    self.b.copy(to.place, from, bytes);
+                    self.copy_value(to.place, to.ty, from, ty);
                 }
             }
         }

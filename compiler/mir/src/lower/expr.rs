@@ -57,7 +57,7 @@ impl FuncLower<'_, '_> {
                 self.at(expr.span, "");
                 match func.emit(*elem, &args, &mut self.b) {
                     Some(value) => ValueId::from_raw(value.0),
-                    None => bug!("{} has no formula", func.name),
+                    None => bug!("the standard function {} has no formula", func.name),
                 }
             }
             ExprKind::RefOf(place) => self.address(place, Purpose::Address),
@@ -122,6 +122,10 @@ impl FuncLower<'_, '_> {
             ExprKind::Read(place) => self.place(place).place,
             ExprKind::Temp(temp) => self.temp_place(*temp),
             ExprKind::Retype(inner) => self.aggregate(inner),
+            ExprKind::String(text) => self.string_constant(text.clone(), 1),
+            ExprKind::WString(text) => {
+                self.string_constant(text.iter().flat_map(|unit| unit.to_le_bytes()).collect(), 2)
+            }
             ExprKind::Call(call) => {
                 let temp = self.new_temp(expr.ty);
                 self.call(call, Some(temp.clone()));
@@ -131,17 +135,16 @@ impl FuncLower<'_, '_> {
         }
     }
 
-    /// Makes the aggregate that an expression gives at a place that the expression cannot see change.
-    pub fn aggregate_into(&mut self, expr: &Expr, to: Place) {
+    /// Stores the aggregate that an expression gives.
+    pub fn aggregate_into(&mut self, expr: &Expr, to: Place, to_type: TypeId) {
         match &expr.kind {
-            ExprKind::Call(call) => {
+            // The copy of the result is the last thing that such a call does.
+            ExprKind::Call(call) if expr.ty == to_type && call.outputs.is_empty() && call.eno.is_none() => {
                 self.call(call, Some(to));
             }
-            ExprKind::Retype(inner) => self.aggregate_into(inner, to),
             _ => {
                 let from = self.aggregate(expr);
-                let bytes = self.cx.layout.size(self.defs, expr.ty);
-                self.b.copy(to, from, bytes);
+                self.copy_value(to, to_type, from, expr.ty);
             }
         }
     }
@@ -172,11 +175,7 @@ pub(super) fn calls(expr: &Expr) -> bool {
         ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) | ExprKind::RangeCheck { value: inner, .. } => {
             calls(inner)
         }
-        ExprKind::Const(_)
-        | ExprKind::String(_)
-        | ExprKind::WString(_)
-        | ExprKind::Temp(_)
-        | ExprKind::Error => false,
+        ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => false,
     }
 }
 
@@ -185,4 +184,3 @@ pub(super) fn place_calls(place: &HirPlace) -> bool {
     let root = matches!(&place.root, Root::Deref(reference) if calls(reference));
     root || place.steps.iter().any(|s| matches!(s, Step::Index(indices, _) if indices.iter().any(calls)))
 }
-

@@ -31,7 +31,8 @@ pub(super) fn lower(cx: &mut Context<'_>, pou: PouId) -> Func {
     let result_repr = result.and_then(|r| repr(defs, defs.vars[r].ty));
     let builder = Builder::new(name.clone(), &reprs, result_repr, !function);
     let body = &defs.bodies[pou];
-    let mut f = FuncLower::new(cx, builder, name, Some(body), cx_frame(cx, variables));
+    let frame_bytes = cx.layout.frame_bytes(variables);
+    let mut f = FuncLower::new(cx, builder, name, Some(body), frame_bytes);
     let (entry, start, exit) = (BlockId::from_raw(0), f.b.block(), f.b.block());
     f.exit = exit;
     for (n, (var, _)) in params.iter().enumerate() {
@@ -59,10 +60,6 @@ pub(super) fn lower(cx: &mut Context<'_>, pou: PouId) -> Func {
     f.start_afresh(variables, function);
     f.b.jump(start, &[]);
     f.finish()
-}
-
-fn cx_frame(cx: &Context<'_>, variables: PouId) -> u32 {
-    cx.layout.frame_bytes(variables)
 }
 
 /// Scalar inputs and VAR_IN_OUTs of a function, in order of declaration: its parameters.
@@ -119,7 +116,13 @@ pub(super) struct FuncLower<'c, 'a> {
 
 impl<'c, 'a> FuncLower<'c, 'a> {
     /// `frame_bytes`: what its variables take.
-    pub fn new(cx: &'c mut Context<'a>, mut b: Builder, name: String, body: Option<&'a Body>, frame_bytes: u32) -> Self {
+    pub fn new(
+        cx: &'c mut Context<'a>,
+        mut b: Builder,
+        name: String,
+        body: Option<&'a Body>,
+        frame_bytes: u32,
+    ) -> Self {
         b.set_checks_division(cx.checks.division);
         Self {
             defs: cx.defs,
@@ -186,10 +189,9 @@ impl<'c, 'a> FuncLower<'c, 'a> {
 
     /// Remembers what a place is called, for the printer.
     pub fn name_place(&mut self, place: &Place, name: impl FnOnce() -> String) {
-        if place.index.is_empty() && !matches!(place.base, Base::Reference(_)) {
-            if let Ok(at) = u32::try_from(place.offset) {
-                self.names.entry((place.base, at)).or_insert_with(name);
-            }
+        let fixed = place.index.is_empty() && !matches!(place.base, Base::Reference(_));
+        if let (true, Ok(at)) = (fixed, u32::try_from(place.offset)) {
+            self.names.entry((place.base, at)).or_insert_with(name);
         }
     }
 
@@ -252,9 +254,7 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             return;
         }
         let data = init::bytes(self.defs, self.cx.layout, ty, init);
-        let at = self.cx.constants.place(data) + u64::from(self.cx.layout.constants.start);
-        // Too many constants are reported when the layout is closed.
-        let constant = Place::new(Base::Region, u32::try_from(at).unwrap_or(u32::MAX));
+        let constant = self.constant_place(data);
         self.b.copy(place, constant, bytes);
     }
 

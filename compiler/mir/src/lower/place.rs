@@ -80,9 +80,9 @@ impl FuncLower<'_, '_> {
     pub fn variable(&mut self, id: VarId) -> Access {
         let var = &self.defs.vars[id];
         let place = self.own_place(id);
-        let of_exposed_block = var.owner.is_some_and(|pou| {
-            self.defs.pous[pou].kind == PouKind::FunctionBlock && self.cx.layout.exposed(pou)
-        });
+        let of_exposed_block = var
+            .owner
+            .is_some_and(|pou| self.defs.pous[pou].kind == PouKind::FunctionBlock && self.cx.layout.exposed(pou));
         let normalise = self.cx.layout.is_addressable(self.defs, id)
             || var.address.is_some_and(|a| a.bit.is_none())
             || (place.base == Base::Instance && of_exposed_block);
@@ -184,7 +184,9 @@ impl FuncLower<'_, '_> {
             }
             Step::Index(indices, name) => self.index(access, indices, name),
             Step::Deref => {
-                let Type::Ref { target, .. } = self.defs.types[access.ty] else { bug!("a dereference of {:?}", access.ty) };
+                let Type::Ref { target, .. } = self.defs.types[access.ty] else {
+                    bug!("a dereference of {:?}", access.ty)
+                };
                 self.check_reference(access, place, Repr::I32.bytes());
                 let reference = self.b.load(Repr::I32, access.place.clone(), false);
                 let name = path::of_place(self.defs, place, n);
@@ -226,9 +228,8 @@ impl FuncLower<'_, '_> {
             if let Some(raw) = constant(index) {
                 let index = raw as i64;
                 if (low..=high).contains(&index) {
-                    access.place.offset = access.place.offset.wrapping_add(
-                        index.wrapping_sub(low).wrapping_mul(i64::from(stride)),
-                    );
+                    access.place.offset =
+                        access.place.offset.wrapping_add(index.wrapping_sub(low).wrapping_mul(i64::from(stride)));
                     continue;
                 }
             }

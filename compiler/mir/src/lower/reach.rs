@@ -116,11 +116,7 @@ impl Reach {
             ExprKind::Convert(_, _, e) | ExprKind::Retype(e) | ExprKind::RangeCheck { value: e, .. } => self.expr(e),
             ExprKind::Call(call) => self.call(call),
             ExprKind::Std { args, .. } => args.iter().for_each(|e| self.expr(e)),
-            ExprKind::Const(_)
-            | ExprKind::String(_)
-            | ExprKind::WString(_)
-            | ExprKind::Temp(_)
-            | ExprKind::Error => {}
+            ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {}
         }
     }
 

@@ -67,7 +67,7 @@ impl FuncLower<'_, '_> {
             let value = self.value(value);
             self.store(&to, value);
         } else {
-            self.aggregate_into(value, to.place);
+            self.aggregate_into(value, to.place, target.ty);
         }
     }
 

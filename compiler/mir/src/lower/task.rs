@@ -5,9 +5,11 @@ use super::Context;
 use super::func::FuncLower;
 use super::place::Access;
 use crate::build::Builder;
-use crate::ir::{Base, Func, FuncId, Inst, Place, Program};
+use crate::ir::{Base, Func, FuncId, Place, Program};
 use crate::layout::shape::repr;
+use crate::verify::bottom_up;
 use index_vec::IndexVec;
+use plcc_diag::bug;
 use plcc_hir::app::{self, Resource};
 use plcc_hir::{Types, VarId};
 
@@ -34,7 +36,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.program_variable(&instance, *var);
-                self.aggregate_into(value, to.place);
+                self.aggregate_into(value, to.place, to.ty);
             }
         }
         let func = self.func(program.pou);
@@ -48,8 +50,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.place(target);
-                let bytes = self.cx.layout.size(self.defs, from.ty);
-                self.b.copy(to.place, from.place, bytes);
+                self.copy_value(to.place, to.ty, from.place, from.ty);
             }
         }
     }
@@ -59,30 +60,17 @@ impl FuncLower<'_, '_> {
     }
 }
 
-/// Bytes of the longest chain of frames that a task can need. There is no recursion (HIR).
+/// Bytes of the longest chain of frames that a task can need.
 pub(super) fn frame_bytes(program: &Program) -> u64 {
-    let mut depth: IndexVec<FuncId, Option<u64>> = program.funcs.iter().map(|_| None).collect();
-    // A function is visited when it is met and again behind all it calls.
-    let mut work: Vec<(FuncId, bool)> = program.funcs.indices().map(|f| (f, false)).collect();
-    while let Some((id, callees_done)) = work.pop() {
-        if depth[id].is_some() {
-            continue;
-        }
+    let order = match bottom_up(program) {
+        Ok(order) => order,
+        Err(id) => bug!("`{}` calls itself", program.funcs[id].name),
+    };
+    let mut need: IndexVec<FuncId, u64> = program.funcs.iter().map(|_| 0).collect();
+    for id in order {
         let func = &program.funcs[id];
-        if callees_done {
-            let longest = callees(func).filter_map(|c| depth[c]).max().unwrap_or(0);
-            depth[id] = Some(u64::from(func.frame_bytes).saturating_add(longest));
-        } else {
-            work.push((id, true));
-            work.extend(callees(func).filter(|c| depth[*c].is_none()).map(|c| (c, false)));
-        }
+        let deepest = func.callees().map(|c| need[c]).max().unwrap_or(0);
+        need[id] = deepest.saturating_add(u64::from(func.frame_bytes));
     }
-    depth.iter().flatten().copied().max().unwrap_or(0)
-}
-
-fn callees(func: &Func) -> impl Iterator<Item = FuncId> + '_ {
-    func.blocks.iter().flat_map(|block| &block.insts).filter_map(|inst| match inst {
-        Inst::Call { callee, .. } => Some(*callee),
-        _ => None,
-    })
+    need.iter().copied().max().unwrap_or(0)
 }

@@ -98,10 +98,16 @@ impl Context<'_> {
     /// An operator with operands; `CAL fb(...)` is a call.
     pub fn il_simple(&self, op: Name, mut operands: Vec<Expr>) -> Box<IlInst> {
         let calls = ["CAL", "CALC", "CALCN"].iter().any(|c| op.text.eq_ignore_ascii_case(c));
-        if calls && operands.len() == 1 && matches!(operands[0].kind, ExprKind::Call(_)) {
-            if let Some(Expr { kind: ExprKind::Call(call), .. }) = operands.pop() {
-                let Call { callee, args, parens } = *call;
-                return Box::new(IlInst::Call { op, callee, args, parens });
+        if calls
+            && operands.len() == 1
+            && let Some(operand) = operands.pop()
+        {
+            match operand.kind {
+                ExprKind::Call(call) => {
+                    let Call { callee, args, parens } = *call;
+                    return Box::new(IlInst::Call { op, callee, args, parens });
+                }
+                kind => operands.push(Expr { kind, ..operand }),
             }
         }
         Box::new(IlInst::Simple { op, operands })

@@ -158,7 +158,7 @@ impl Lexer<'_, '_, '_> {
         let tail = &self.text[end..stop];
         message = if UNITS.iter().any(|u| u.eq_ignore_ascii_case(tail)) {
             message.help(format!("a duration is written `T#{text}`"))
-        } else if text[..1] == *"0" && tail[..1].eq_ignore_ascii_case("x") {
+        } else if text.starts_with('0') && tail.starts_with(['x', 'X']) {
             message.help(format!("a hexadecimal number is written `16#{}`", &tail[1..]))
         } else {
             message.help("names start with a letter or an underline; numbers are `12`, `16#FF`, `1.5`, `1e6`")
