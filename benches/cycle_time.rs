@@ -29,10 +29,13 @@ impl Times {
     }
 }
 
+/// One scan at a time of the clock; the status.
+type Scan<'a> = Box<dyn FnMut(&mut [u8], i64) -> u32 + 'a>;
+
 /// One engine on its own memory.
 struct Lane<'a> {
     memory: Vec<Line>,
-    scan: Box<dyn FnMut(&mut [u8], i64) -> u32 + 'a>,
+    scan: Scan<'a>,
     times: Vec<u64>,
 }
 
