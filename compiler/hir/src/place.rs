@@ -312,21 +312,13 @@ impl<'a> Checker<'_, 'a> {
         for (e, (low, high)) in indices.iter().zip(&dims) {
             let operand = self.operand(e, None);
             let index = match operand {
-                Operand::Int(v) => {
-                    if v < i128::from(*low) || v > i128::from(*high) {
-                        let message = format!("index {v} is outside the bounds {low}..{high}");
-                        self.report(
-                            Diagnostic::new(codes::CONSTANT_INDEX, e.span, message)
-                                .also(base.span, "of this array")
-                                .help("use an index inside the bounds"),
-                        );
-                        return None;
-                    }
-                    self.coerce(Operand::Int(v), e.span, Types::elem(Elem::Lint))
-                }
+                Operand::Int(_) => self.coerce(operand, e.span, Types::elem(Elem::Lint)),
                 Operand::Error => return None,
                 operand => self.index_value(operand, e.span)?,
             };
+            if index.ty == Types::ERROR {
+                return None;
+            }
             if let ExprKind::Const(raw) = index.kind {
                 let v = raw as i64;
                 if v < *low || v > *high {
