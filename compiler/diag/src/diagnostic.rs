@@ -117,6 +117,11 @@ impl Diagnostics {
         all
     }
 
+    /// The message found last.
+    pub fn last(&self) -> Option<&Diagnostic> {
+        self.list.last()
+    }
+
     /// All messages in the order in which they were found.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.list.iter()

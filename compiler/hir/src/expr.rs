@@ -219,6 +219,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                     rules::conversion_name(from, to)
                 )));
             }
+            Implicit::CodesysOnly if self.returns_to_bits(from, to, span) => {}
             Implicit::CodesysOnly => {
                 let help = conversion_help(from, to);
                 let strict = self.mismatch_text(span, ty, target).help(help);
@@ -290,6 +291,22 @@ impl<'c, 'a> Checker<'c, 'a> {
                 .help(format!("allowed are {low} to {high}")),
         );
         error_expr(span)
+    }
+
+    /// Whether a bit string was counted as an integer within `span`, with a warning there, and the result goes back
+    /// into a bit string of that width: `w := w + 1` is one deviation from strict and gets one warning.
+    fn returns_to_bits(&self, from: Elem, to: Elem, span: Span) -> bool {
+        from.is_integer()
+            && to.is_bits()
+            && from.bits() == to.bits()
+            && self.codesys(span)
+            && self.cx.diags.last().is_some_and(|d| {
+                let inner = d.primary.span;
+                d.code == codes::LAX_CONVERSION
+                    && inner.file == span.file
+                    && inner != span
+                    && (span.start..span.end).contains(&inner.start)
+            })
     }
 
     fn mismatch_text(&self, span: Span, from: TypeId, to: TypeId) -> Diagnostic {

@@ -132,7 +132,39 @@ impl Lexer<'_, '_, '_> {
         let member =
             self.out.tokens.last().is_some_and(|t| t.kind == Tok::Dot && t.end as usize == self.at && !self.first);
         let kind = if member { Tok::Id } else { word_kind(word) };
+        let kind = if kind == Tok::Op && self.is_function_form(end) { Tok::Id } else { kind };
         self.push(kind, end - self.at);
+    }
+
+    /// Whether the operator's word that ends at `end` is called as a function (`x := AND(a, b, c)`): a parenthesis
+    /// follows, and it stands where an operand must begin. At the start of a line it may be an operator of IL.
+    fn is_function_form(&self, end: usize) -> bool {
+        use Tok::{Assign, Comma, Elsif, Eq, If, LBracket, LParen, Minus, Not, Op, Plus, Rel, Star, Until, While};
+        let gap = self.bytes[end..].iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
+        let opens = self.bytes.get(end + gap) == Some(&b'(') && self.bytes.get(end + gap + 1) != Some(&b'*');
+        let before = self.out.tokens.last().map(|t| t.kind);
+        opens
+            && !self.first
+            && before.is_some_and(|before| {
+                matches!(
+                    before,
+                    Assign
+                        | Comma
+                        | Eq
+                        | If
+                        | Elsif
+                        | LBracket
+                        | LParen
+                        | Minus
+                        | Not
+                        | Op
+                        | Plus
+                        | Rel
+                        | Star
+                        | Until
+                        | While
+                )
+            })
     }
 
     fn block_comment(&mut self, open: u8, close: u8) {

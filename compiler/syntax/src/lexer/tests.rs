@@ -141,3 +141,13 @@ fn openers_without_end_take_linear_time() {
         assert_eq!(lexed(&text.repeat(200_000)).1.len(), 1, "{text}");
     }
 }
+
+#[test]
+fn operators_called_as_functions_are_names() {
+    assert_eq!(tokens("x := AND(a)")[2], "Id AND");
+    assert_eq!(tokens("(mod (a, b)")[1], "Id mod");
+    assert_eq!(tokens("a XOR (b)")[1], "Op XOR");
+    assert_eq!(tokens(") OR(b)")[1], "Op OR");
+    // Operators of IL at the start of their line.
+    assert_eq!(tokens("AND(\nOR( a")[2], "Op OR");
+}
