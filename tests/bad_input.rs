@@ -68,6 +68,11 @@ fn unterminated_comment_and_string() {
 }
 
 #[test]
+fn a_stray_nul_costs_one_message() {
+    one("PROGRAM Main\u{0}\u{0}\nVAR x : INT; END_VAR\nx := 1;\nEND_PROGRAM\n", "E0106", 1);
+}
+
+#[test]
 fn sources_that_are_not_utf8_are_latin1() {
     let text: Vec<u8> = program("x := 1; (* gr\u{f6}\u{df}e *)").chars().map(|c| c as u8).collect();
     assert!(std::str::from_utf8(&text).is_err());

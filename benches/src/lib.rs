@@ -1,1 +1,1 @@
-//! .
+//! Benchmarks of plcc; see `cycle_time.rs`. Run with `cargo bench`.

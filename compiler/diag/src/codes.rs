@@ -148,6 +148,10 @@ Correct the first ones and compile again.\n";
     BAD_ASSOCIATION "E0124" Error "an action association is not well formed" "\
 A step lists its actions as `name(qualifier, time, indicators);`. Only the name is required; without a qualifier it means N.\n\n```st\nPROGRAM Main\nVAR b : BOOL; END_VAR\nINITIAL_STEP S1: b(1 + 2); END_STEP\nTRANSITION FROM S1 TO S1 := TRUE; END_TRANSITION\nEND_PROGRAM\n```\n\n\
 Write for example `b(N);` or `b(L, T#5s);`.\n";
+    MISSPELLED "E0125" Error "a reserved word is misspelled" "\
+A word that differs by one letter from a reserved word stands where only that reserved word makes sense.\n\n\
+```st\nPROGRAM Main\nVAR x : INT; END_VAR\nIF x > 0 THNE\n  x := 0;\nEND_IF;\nEND_PROGRAM\n```\n\n\
+Write the reserved word.\n";
     OPTIONAL_SEMICOLON "H0101" Hint "no `;` behind END_IF and its kind" "\
 The standard ends every statement with `;`, also behind END_IF, END_CASE, END_FOR, END_WHILE and END_REPEAT. plcc does without.\n\n```st\nPROGRAM Main\nVAR x : INT; END_VAR\nIF x > 0 THEN\n  x := 0;\nEND_IF\nx := 1;\nEND_PROGRAM\n```\n\n\
 Write `END_IF;` for other tools.\n";

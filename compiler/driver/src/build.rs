@@ -41,7 +41,9 @@ pub fn build(args: &BuildArgs, color: Color) -> Result<u8, Failure> {
         return Ok(0);
     }
     let app = checked.app.as_ref().ok_or_else(nothing_to_run)?;
-    let compiled = pipeline::compile(&checked, app, &project, &parsed, &args.code)?;
+    // A print shows every POU, an executable holds what its tasks reach.
+    let prints_code = args.emit.iter().any(|s| matches!(s, Stage::Mir | Stage::Clif | Stage::Asm));
+    let compiled = pipeline::compile(&checked, app, &project, &parsed, &args.code, prints_code)?;
     let target = args.target.as_deref().or(project.build.target.as_deref()).filter(|t| *t != link::HOST);
     for stage in &args.emit {
         match stage {

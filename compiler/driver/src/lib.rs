@@ -72,6 +72,7 @@ fn check(args: &SourceArgs, color: Color) -> Result<u8, Failure> {
     let mut parsed = pipeline::parse(sources, &ids);
     let checked = pipeline::check(&mut parsed, &project);
     report(&parsed, Some(&checked), args.message_format, color)?;
+    pipeline::fits(&checked, &parsed)?;
     if args.message_format == MessageFormat::Human && parsed.diags.iter().next().is_none() {
         eprintln!("no mistakes found");
     }
@@ -84,7 +85,7 @@ fn run(args: &cli::RunArgs, color: Color) -> Result<u8, Failure> {
     let checked = pipeline::check(&mut parsed, &project);
     report(&parsed, Some(&checked), args.sources.message_format, color)?;
     let app = checked.app.as_ref().ok_or_else(nothing_to_run)?;
-    let compiled = pipeline::compile(&checked, app, &project, &parsed, &args.code)?;
+    let compiled = pipeline::compile(&checked, app, &project, &parsed, &args.code, false)?;
     let mut engine: Box<dyn plcc_runtime::engine::Engine> = match args.engine {
         cli::EngineArg::Interp => Box::new(engines::Interpreter(plcc_mir::interp::Interp::new(&compiled.program))),
         cli::EngineArg::Jit => {

@@ -75,10 +75,11 @@ pub fn compile(
     project: &Project,
     parsed: &Parsed,
     code: &CodeArgs,
+    all: bool,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
     let (program, layout) =
-        plcc_mir::lower::lower(&checked.defs, app, 0, checks, false).map_err(|e| too_large(e, &parsed.sources))?;
+        plcc_mir::lower::lower(&checked.defs, app, 0, checks, all).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
         plcc_diag::bug!(
@@ -89,6 +90,14 @@ pub fn compile(
     }
     let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
     Ok(Compiled { program, image })
+}
+
+/// Whether the variables fit into memory, for `check`, which generates no code.
+pub fn fits(checked: &Checked, parsed: &Parsed) -> Result<(), Failure> {
+    match &checked.app {
+        Some(app) => plcc_mir::lower::fits(&checked.defs, app, 0).map_err(|e| too_large(e, &parsed.sources)),
+        None => Ok(()),
+    }
 }
 
 /// The variables do not fit: the one mistake that shows only after checking.

@@ -10,6 +10,7 @@ mod bodies;
 mod declarations;
 mod ends;
 mod il;
+mod outside;
 
 use crate::Profile;
 use crate::lexer::Lexed;
@@ -37,7 +38,7 @@ pub fn body(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) 
     let mut blocks = Blocks::new(text, lexed, profile, report);
     // A POU around it keeps every rule in one place; its words are no tokens of the text.
     let opener = Token::inserted(Tok::Program, 0);
-    blocks.stack.push(Frame::new(Block::Program, opener, None, None));
+    blocks.stack.push(Frame::new(Construct::Program, opener, None, None));
     blocks.out.push(Token::inserted(Tok::StartBody, 0));
     blocks.start_body();
     while blocks.at < lexed.tokens.len() && !blocks.stack.is_empty() {
@@ -52,8 +53,7 @@ pub fn body(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) 
 
 /// Constructs with an END word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(clippy::enum_variant_names)] // FUNCTION_BLOCK is the standard's word
-enum Block {
+enum Construct {
     Program,
     Function,
     FunctionBlock,
@@ -73,72 +73,72 @@ enum Block {
     Repeat,
 }
 
-impl Block {
+impl Construct {
     /// Its END word.
     fn end(self) -> Tok {
         match self {
-            Block::Program => Tok::EndProgram,
-            Block::Function => Tok::EndFunction,
-            Block::FunctionBlock => Tok::EndFunctionBlock,
-            Block::Type => Tok::EndType,
-            Block::Configuration => Tok::EndConfiguration,
-            Block::Resource => Tok::EndResource,
-            Block::Action => Tok::EndAction,
-            Block::Step => Tok::EndStep,
-            Block::Transition => Tok::EndTransition,
-            Block::Var => Tok::EndVar,
-            Block::Struct => Tok::EndStruct,
-            Block::Union => Tok::EndUnion,
-            Block::If => Tok::EndIf,
-            Block::Case => Tok::EndCase,
-            Block::For => Tok::EndFor,
-            Block::While => Tok::EndWhile,
-            Block::Repeat => Tok::EndRepeat,
+            Construct::Program => Tok::EndProgram,
+            Construct::Function => Tok::EndFunction,
+            Construct::FunctionBlock => Tok::EndFunctionBlock,
+            Construct::Type => Tok::EndType,
+            Construct::Configuration => Tok::EndConfiguration,
+            Construct::Resource => Tok::EndResource,
+            Construct::Action => Tok::EndAction,
+            Construct::Step => Tok::EndStep,
+            Construct::Transition => Tok::EndTransition,
+            Construct::Var => Tok::EndVar,
+            Construct::Struct => Tok::EndStruct,
+            Construct::Union => Tok::EndUnion,
+            Construct::If => Tok::EndIf,
+            Construct::Case => Tok::EndCase,
+            Construct::For => Tok::EndFor,
+            Construct::While => Tok::EndWhile,
+            Construct::Repeat => Tok::EndRepeat,
         }
     }
 
     /// What the END word `kind` closes.
-    fn closed_by(kind: Tok) -> Option<Block> {
+    fn closed_by(kind: Tok) -> Option<Construct> {
         Some(match kind {
-            Tok::EndProgram => Block::Program,
-            Tok::EndFunction => Block::Function,
-            Tok::EndFunctionBlock => Block::FunctionBlock,
-            Tok::EndType => Block::Type,
-            Tok::EndConfiguration => Block::Configuration,
-            Tok::EndResource => Block::Resource,
-            Tok::EndAction => Block::Action,
-            Tok::EndStep => Block::Step,
-            Tok::EndTransition => Block::Transition,
-            Tok::EndVar => Block::Var,
-            Tok::EndStruct => Block::Struct,
-            Tok::EndUnion => Block::Union,
-            Tok::EndIf => Block::If,
-            Tok::EndCase => Block::Case,
-            Tok::EndFor => Block::For,
-            Tok::EndWhile => Block::While,
-            Tok::EndRepeat => Block::Repeat,
+            Tok::EndProgram => Construct::Program,
+            Tok::EndFunction => Construct::Function,
+            Tok::EndFunctionBlock => Construct::FunctionBlock,
+            Tok::EndType => Construct::Type,
+            Tok::EndConfiguration => Construct::Configuration,
+            Tok::EndResource => Construct::Resource,
+            Tok::EndAction => Construct::Action,
+            Tok::EndStep => Construct::Step,
+            Tok::EndTransition => Construct::Transition,
+            Tok::EndVar => Construct::Var,
+            Tok::EndStruct => Construct::Struct,
+            Tok::EndUnion => Construct::Union,
+            Tok::EndIf => Construct::If,
+            Tok::EndCase => Construct::Case,
+            Tok::EndFor => Construct::For,
+            Tok::EndWhile => Construct::While,
+            Tok::EndRepeat => Construct::Repeat,
             _ => return None,
         })
     }
 
     /// The statement that the word `kind` opens.
-    fn statement(kind: Tok) -> Option<Block> {
+    fn statement(kind: Tok) -> Option<Construct> {
         Some(match kind {
-            Tok::If => Block::If,
-            Tok::Case => Block::Case,
-            Tok::For => Block::For,
-            Tok::While => Block::While,
-            Tok::Repeat => Block::Repeat,
+            Tok::If => Construct::If,
+            Tok::Case => Construct::Case,
+            Tok::For => Construct::For,
+            Tok::While => Construct::While,
+            Tok::Repeat => Construct::Repeat,
             _ => return None,
         })
     }
 
     fn is_statement(self) -> bool {
-        matches!(self, Block::If | Block::Case | Block::For | Block::While | Block::Repeat)
+        matches!(self, Construct::If | Construct::Case | Construct::For | Construct::While | Construct::Repeat)
     }
 
     fn is_pou(self) -> bool {
-        matches!(self, Block::Program | Block::Function | Block::FunctionBlock)
+        matches!(self, Construct::Program | Construct::Function | Construct::FunctionBlock)
     }
 }
 
@@ -158,7 +158,7 @@ enum Phase {
 /// An open construct.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
-    block: Block,
+    block: Construct,
     opener: Token,
     phase: Phase,
     /// Blanks before the opener, if it is the first on its line.
@@ -176,7 +176,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn new(block: Block, opener: Token, indent: Option<u32>, behind_else: Option<Token>) -> Self {
+    fn new(block: Construct, opener: Token, indent: Option<u32>, behind_else: Option<Token>) -> Self {
         let (phase, has_else, has_of) = (Phase::Head, false, false);
         Self { block, opener, phase, indent, has_else, has_of, behind_else, else_if: None, suspect: None }
     }
@@ -267,6 +267,8 @@ impl<'a, 'd> Blocks<'a, 'd> {
     /// All tokens pass here: what nests too deeply in parentheses is cut out.
     fn emit(&mut self, t: Token) {
         match t.kind {
+            // Of several `;` in a row one is enough.
+            Tok::Semi if self.last() == Tok::Semi => return,
             Tok::LParen | Tok::LBracket => {
                 self.parens += 1;
                 if self.parens > MAX_PARENS {
@@ -317,7 +319,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
 
     fn step(&mut self) {
         let t = self.peek(0);
-        if let Some(block) = Block::closed_by(t.kind) {
+        if let Some(block) = Construct::closed_by(t.kind) {
             return self.end_word(block, 1);
         }
         if t.kind == Tok::Id && self.split_end() {
@@ -328,26 +330,28 @@ impl<'a, 'd> Blocks<'a, 'd> {
         }
         let Some(top) = self.stack.last() else { return self.between_items() };
         match (top.block, top.phase) {
-            (Block::Var | Block::Struct | Block::Union | Block::Type, _) => self.declaration_token(),
-            (Block::Configuration | Block::Resource, _) => self.resource_token(),
-            (Block::Step, _) => self.step_token(),
-            (Block::Transition, Phase::Head) => self.transition_token(),
+            (Construct::Var | Construct::Struct | Construct::Union | Construct::Type, _) => self.declaration_token(),
+            (Construct::Configuration | Construct::Resource, _) => self.resource_token(),
+            (Construct::Step, _) => self.step_token(),
+            (Construct::Transition, Phase::Head) => self.transition_token(),
             (_, Phase::Il) => self.il_line(),
             (_, Phase::Sfc) => self.chart_token(),
-            (Block::Program | Block::Function | Block::FunctionBlock | Block::Action, Phase::Head) => self.head_token(),
+            (Construct::Program | Construct::Function | Construct::FunctionBlock | Construct::Action, Phase::Head) => {
+                self.head_token()
+            }
             _ => self.statement_token(),
         }
     }
 
     /// The item that the next token opens, wherever it stands.
-    fn item_here(&self) -> Option<Block> {
+    fn item_here(&self) -> Option<Construct> {
         let t = self.peek(0);
         let block = match t.kind {
-            Tok::Program => Block::Program,
-            Tok::Function => Block::Function,
-            Tok::FunctionBlock => Block::FunctionBlock,
-            Tok::Type => Block::Type,
-            Tok::Id if t.first && self.is(0, "CONFIGURATION") => Block::Configuration,
+            Tok::Program => Construct::Program,
+            Tok::Function => Construct::Function,
+            Tok::FunctionBlock => Construct::FunctionBlock,
+            Tok::Type => Construct::Type,
+            Tok::Id if t.first && self.is(0, "CONFIGURATION") => Construct::Configuration,
             _ => return None,
         };
         // As the name of something it is a mistake that the grammar reports better.
@@ -357,27 +361,27 @@ impl<'a, 'd> Blocks<'a, 'd> {
         if matches!(self.peek(2).kind, Tok::Colon | Tok::Id) || self.peek(1).kind != Tok::Id {
             // `PROGRAM P1 WITH T : Main` and `PROGRAM P1 : Main` in a RESOURCE declare an instance.
             let declares = self.peek(2).kind == Tok::Colon || self.is(2, "WITH") || self.is(3, "WITH");
-            let resource = matches!(self.top(), Some(Block::Resource | Block::Configuration));
-            if block == Block::Program && resource && (declares || self.peek(3).kind == Tok::Colon) {
+            let resource = matches!(self.top(), Some(Construct::Resource | Construct::Configuration));
+            if block == Construct::Program && resource && (declares || self.peek(3).kind == Tok::Colon) {
                 return None;
             }
         }
-        if self.peek(1).kind != Tok::Id && block == Block::Configuration {
+        if self.peek(1).kind != Tok::Id && block == Construct::Configuration {
             return None;
         }
         Some(block)
     }
 
-    fn top(&self) -> Option<Block> {
+    fn top(&self) -> Option<Construct> {
         self.stack.last().map(|f| f.block)
     }
 
     /// Opens an item at the level of the file, closing whatever is open.
-    fn open_item(&mut self, block: Block) {
+    fn open_item(&mut self, block: Construct) {
         if !self.stack.is_empty() {
             self.close_above(0, self.peek(0));
         }
-        let kind = if block == Block::Configuration { Tok::Configuration } else { self.peek(0).kind };
+        let kind = if block == Construct::Configuration { Tok::Configuration } else { self.peek(0).kind };
         self.begin_item();
         self.open(block, kind);
         if block.is_pou() {
@@ -392,13 +396,13 @@ impl<'a, 'd> Blocks<'a, 'd> {
     }
 
     /// Opens a construct with the next token, which is emitted as `kind`.
-    fn open(&mut self, block: Block, kind: Tok) {
+    fn open(&mut self, block: Construct, kind: Tok) {
         let opener = self.peek(0);
         if self.stack.len() >= MAX_BLOCKS {
             return self.skip_block(opener);
         }
         let behind_else = match (block, self.out.last()) {
-            (Block::If, Some(t)) if t.kind == Tok::Else && !opener.first => Some(*t),
+            (Construct::If, Some(t)) if t.kind == Tok::Else && !opener.first => Some(*t),
             _ => None,
         };
         let indent = self.indent(opener);
@@ -434,10 +438,10 @@ impl<'a, 'd> Blocks<'a, 'd> {
         let mut depth = 0usize;
         while self.at < self.tokens.len() {
             let kind = self.peek(0).kind;
-            if Block::statement(kind).is_some() || matches!(kind, Tok::Struct | Tok::Union) {
+            if Construct::statement(kind).is_some() || matches!(kind, Tok::Struct | Tok::Union) {
                 depth += 1;
-            } else if let Some(block) = Block::closed_by(kind) {
-                if !block.is_statement() && !matches!(block, Block::Struct | Block::Union) {
+            } else if let Some(block) = Construct::closed_by(kind) {
+                if !block.is_statement() && !matches!(block, Construct::Struct | Construct::Union) {
                     break;
                 }
                 depth -= 1;
@@ -454,76 +458,6 @@ impl<'a, 'd> Blocks<'a, 'd> {
         if self.peek(0).kind != Tok::Semi {
             self.insert(Tok::Semi);
         }
-    }
-
-    /// Between the items of a file.
-    fn between_items(&mut self) {
-        let t = self.peek(0);
-        match t.kind {
-            Tok::Semi => self.at += 1,
-            Tok::Var | Tok::VarConfig | Tok::VarAccess => {
-                self.begin_item();
-                self.open_section();
-            }
-            Tok::Id if self.action_here() => {
-                self.begin_item();
-                self.open_action();
-            }
-            Tok::Id if self.unsupported() => {}
-            // Reported by the lexer.
-            Tok::Bad => {
-                self.lost = true;
-                self.at += 1;
-            }
-            _ => self.outside(t),
-        }
-    }
-
-    /// Something that cannot stand between items; what follows belongs to the same mistake.
-    fn outside(&mut self, t: Token) {
-        self.at += 1;
-        if std::mem::replace(&mut self.lost, true) {
-            return;
-        }
-        let text = t.text(self.text);
-        let message = if matches!(self.peek(0).kind, Tok::Assign | Tok::LParen | Tok::Dot | Tok::LBracket)
-            || Block::statement(t.kind).is_some()
-        {
-            "a statement stands outside of any POU".to_string()
-        } else {
-            format!("`{}` stands outside of any declaration", shorten(text))
-        };
-        let help = match closest_item(text) {
-            Some(word) => format!("did you mean `{word}`?"),
-            None => "a file consists of PROGRAM, FUNCTION, FUNCTION_BLOCK, TYPE, VAR_GLOBAL and CONFIGURATION".into(),
-        };
-        self.report.push(self.report.at(codes::OUTSIDE_POU, t.start, t.end, message).help(help));
-    }
-
-    /// Words of object orientation: reported and left out up to their END word.
-    fn unsupported(&mut self) -> bool {
-        const WORDS: &[&str] = &["CLASS", "INTERFACE", "METHOD", "PROPERTY", "NAMESPACE"];
-        let t = self.peek(0);
-        let Some(word) = WORDS.iter().find(|w| self.is(0, w)) else { return false };
-        if !t.first || !matches!(self.peek(1).kind, Tok::Id) || self.peek(1).first {
-            return false;
-        }
-        self.report.push(
-            self.report
-                .at(codes::NOT_SUPPORTED, t.start, t.end, format!("{word} is not supported"))
-                .help("plcc compiles IEC 61131-3 without object orientation: use function blocks with actions"),
-        );
-        let end = format!("END_{word}");
-        // Up to the END word, if there is one before the POU around it ends.
-        let mut ahead = 1;
-        while self.at + ahead < self.tokens.len() && !self.is(ahead, &end) {
-            if Block::closed_by(self.peek(ahead).kind).is_some_and(Block::is_pou) && !self.stack.is_empty() {
-                break;
-            }
-            ahead += 1;
-        }
-        self.at = (self.at + ahead + usize::from(self.is(ahead, &end))).min(self.tokens.len());
-        true
     }
 
     fn end_of_file(&mut self) {
@@ -577,18 +511,11 @@ fn ends_parens(kind: Tok) -> bool {
             | Tok::BodySt
             | Tok::BodyIl
             | Tok::BodySfc
-    ) || Block::closed_by(kind).is_some()
+    ) || Construct::closed_by(kind).is_some()
 }
 
-/// The item word that a misspelled one means.
-fn closest_item(word: &str) -> Option<&'static str> {
-    const WORDS: &[&str] = &["PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "TYPE", "VAR_GLOBAL", "CONFIGURATION", "ACTION"];
-    let upper = word.to_ascii_uppercase();
-    WORDS.iter().copied().find(|w| is_close(&upper, w))
-}
-
-/// Whether two words differ by one inserted, removed, replaced or swapped letter.
-fn is_close(a: &str, b: &str) -> bool {
+/// Whether two words in upper case differ by one inserted, removed, replaced or swapped letter.
+pub(crate) fn is_close(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     if a.len().abs_diff(b.len()) > 1 || a.len() < 3 {
         return false;

@@ -96,9 +96,10 @@ impl<'t> Context<'t> {
         self.text
     }
 
-    /// Bytes `l..r`.
+    /// Bytes `l..r`. Behind an optional part that is not there `r` is the start of the next token: blanks are cut off.
     pub fn span(&self, l: u32, r: u32) -> Span {
-        Span::new(self.file, l, r.max(l))
+        let blanks = self.slice(l, r).bytes().rev().take_while(u8::is_ascii_whitespace).count() as u32;
+        Span::new(self.file, l, r.max(l) - blanks)
     }
 
     fn slice(&self, l: u32, r: u32) -> &'t str {

@@ -308,10 +308,15 @@ impl Lexer<'_, '_, '_> {
                 message = message.help("this does not look like a text file");
             }
             self.report.push(message);
-            self.push(Tok::Bad, length);
-        } else {
-            self.at += length;
+            // A control character was not written by anybody: what stands around it is still what it seems to be.
+            if !c.is_control() {
+                return self.push(Tok::Bad, length);
+            }
         }
+        self.at += length;
         self.bad_until = self.at;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -94,7 +94,8 @@ pub fn print_tokens(file: FileId, text: &str) -> String {
             Tok::Id => out.push_str(&format!(" name `{written}`")),
             Tok::Int | Tok::Lit => out.push_str(&format!(" literal `{written}`")),
             Tok::Qualified | Tok::Address | Tok::Part | Tok::Bad => {
-                out.push_str(&format!(" {} `{written}`", t.kind.describe().trim_start_matches(['a', 'n', ' '])));
+                let kind = t.kind.describe().split_once(' ').map_or("", |(_, noun)| noun);
+                out.push_str(&format!(" {kind} `{written}`"));
             }
             _ => out.push_str(&format!(" {written}")),
         }

@@ -42,7 +42,8 @@ pub fn parse(cx: &Context, tokens: Vec<Token>, report: &mut Reporter) -> Option<
         };
         cx.take_messages();
         work += refused.at + 1;
-        if last_resort {
+        // Nobody would read what comes of it.
+        if last_resort || recovery.report.is_full() {
             return None;
         }
         let spent = recovery.messages >= MAX_MESSAGES || work > MAX_WORK;

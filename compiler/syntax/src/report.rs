@@ -29,6 +29,11 @@ impl<'d> Reporter<'d> {
         Diagnostic::new(code, self.span(start, end), message)
     }
 
+    /// Whether further messages are dropped.
+    pub fn is_full(&self) -> bool {
+        self.left == 0
+    }
+
     /// Adds a message, unless the file has had its share.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         match self.left {

@@ -141,6 +141,8 @@ pub struct Image {
 }
 
 const PAGE: usize = 4096;
+/// Inside so many bytes, and between two runs no further apart, zeros are kept.
+const CHUNK: usize = 64;
 
 impl Image {
     /// Writes bytes; what was there is replaced.
@@ -166,17 +168,20 @@ impl Image {
 
     /// The bytes as segments in rising order; short gaps of zeros are kept inside.
     pub fn segments(&self) -> Vec<Segment> {
-        const GAP: u32 = 32;
         let mut segments: Vec<Segment> = Vec::new();
         for (page, bytes) in &self.pages {
-            for (at, byte) in bytes.iter().enumerate().filter(|(_, b)| **b != 0) {
-                let offset = page * PAGE as u32 + at as u32;
+            let start = page * PAGE as u32;
+            for chunk in (0..PAGE).step_by(CHUNK) {
+                let bytes = &bytes[chunk..chunk + CHUNK];
+                let Some(first) = bytes.iter().position(|b| *b != 0) else { continue };
+                let last = bytes.iter().rposition(|b| *b != 0).unwrap_or(first);
+                let offset = start + (chunk + first) as u32;
                 match segments.last_mut() {
-                    Some(last) if offset - (last.offset + last.bytes.len() as u32) <= GAP => {
-                        last.bytes.resize((offset - last.offset) as usize, 0);
-                        last.bytes.push(*byte);
+                    Some(open) if offset - (open.offset + open.bytes.len() as u32) <= CHUNK as u32 => {
+                        open.bytes.resize((offset - open.offset) as usize, 0);
+                        open.bytes.extend_from_slice(&bytes[first..=last]);
                     }
-                    _ => segments.push(Segment { offset, bytes: vec![*byte] }),
+                    _ => segments.push(Segment { offset, bytes: bytes[first..=last].to_vec() }),
                 }
             }
         }

@@ -103,6 +103,13 @@ pub fn lower(
     Ok((program, layout))
 }
 
+/// Whether the variables of a resource fit into its region: what can be said without lowering, for `plcc check`.
+pub fn fits(defs: &Defs, app: &Application, resource: usize) -> Result<(), TooLarge> {
+    let resource = &app.resources[resource];
+    let mut layout = Layout::new(defs, resource, &Reach::new(defs, resource, true))?;
+    layout.close(0, 0)
+}
+
 /// What all functions of a resource share while they are lowered.
 struct Context<'a> {
     defs: &'a Defs,

@@ -513,6 +513,7 @@ fn layout_aligns_and_refuses_what_is_too_large() {
     let app = Application { resources: vec![resource], ..Application::default() };
     let error = lower(&test.defs, &app, 0, Checks::ALL, false).expect_err("too large");
     assert_eq!(error.what, "variable `huge`");
+    assert_eq!(super::fits(&test.defs, &app, 0), Err(error));
 }
 
 #[test]
@@ -534,4 +535,63 @@ fn retain_ranges_leave_out_references() {
     let run = test.run(Vec::new());
     let at = run.layout.program(0) + 4;
     assert_eq!(run.layout.retain, [(at, 4), (at + 8, 4)]);
+}
+
+#[test]
+fn programs_are_split_where_addresses_are_taken() {
+    let mut test = Test::new();
+    let int = Types::elem(Elem::Int);
+    let plain = test.local("plain", int);
+    let taken = test.local("taken", int);
+    test.defs.vars[taken].address_taken = true;
+    let bit = test.local("bit", Types::elem(Elem::Bool));
+    test.defs.vars[bit].address = Some(Address { area: Area::Output, byte: 1, bit: Some(3) });
+    let instance = |name: &str| Program {
+        name: name.into(),
+        pou: test.main,
+        task: 0,
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        span: SPAN,
+    };
+    let resource = Resource { programs: vec![instance("A"), instance("B")], ..Resource::default() };
+    let app = Application { resources: vec![resource], ..Application::default() };
+    let (_, layout) = lower(&test.defs, &app, 0, Checks::ALL, false).expect("it fits");
+    let inside = |offset: u32| (layout.addressable.start..layout.addressable.end()).contains(&offset);
+    for program in [0, 1] {
+        let start = layout.program(program);
+        let at = |var| layout.offset(var, start).map(|(offset, _)| offset).expect("a place");
+        assert!(!inside(at(plain)) && inside(at(taken)));
+    }
+    assert_ne!(layout.offset(taken, layout.program(0)), layout.offset(taken, layout.program(1)));
+    let area = layout.area(Area::Output);
+    assert_eq!((layout.offset(bit, 0), area.bytes), (Some((area.start + 1, Some(3))), 8));
+}
+
+#[test]
+fn strings_are_cut_at_the_capacity() {
+    let mut test = Test::new();
+    let of = |test: &mut Test, capacity| test.intern(Type::String { wide: false, capacity });
+    let (three, six) = (of(&mut test, 3), of(&mut test, 6));
+    let short = test.local("short", three);
+    let guard = test.local("guard", Types::elem(Elem::Byte));
+    let long = test.local("long", six);
+    let again = test.local("again", six);
+    test.defs.vars[again].init = Init::String(b"zzzzzz".to_vec());
+    let text = Expr { kind: ExprKind::String(b"abcdefgh".to_vec()), ty: of(&mut test, 8), span: SPAN };
+    let stmts = vec![
+        test.assign(guard, number(Elem::Byte, 0xEE)),
+        test.assign(long, text),
+        test.assign(short, test.read(long)),
+        test.assign(again, test.read(short)),
+    ];
+    let run = test.run(stmts);
+    let bytes = |var, n: usize| {
+        let (at, _) = run.layout.offset(var, run.layout.program(0)).expect("a place");
+        run.region[at as usize..][..n].to_vec()
+    };
+    assert_eq!(bytes(long, 7), b"abcdef\0");
+    assert_eq!(bytes(short, 4), b"abc\0");
+    assert_eq!(bytes(again, 4), b"abc\0");
+    assert_eq!(run.int(guard, Elem::Byte), 0xEE);
 }

@@ -1,6 +1,6 @@
 //! Bodies in ST and SFC: their constructs, and where they end.
 
-use super::{Block, Blocks, Phase};
+use super::{Blocks, Construct, Phase};
 use crate::token::{Tok, Token};
 use plcc_diag::codes;
 
@@ -26,11 +26,15 @@ impl Blocks<'_, '_> {
         if self.step_here() || self.transition_here() {
             return true;
         }
-        if !self.action_here() {
+        // Steps may come behind the ACTIONs of a POU, once per POU.
+        if !self.action_here() || !self.top().is_some_and(Construct::is_pou) {
             return false;
         }
         let rest = self.tokens[self.at..].iter().enumerate();
-        let mut body = rest.take_while(|(_, t)| !Block::closed_by(t.kind).is_some_and(Block::is_pou));
+        let mut body = rest.take_while(|(_, t)| {
+            let opens = matches!(t.kind, Tok::Program | Tok::Function | Tok::FunctionBlock);
+            !opens && !Construct::closed_by(t.kind).is_some_and(Construct::is_pou)
+        });
         body.any(|(i, t)| t.kind == Tok::Id && t.first && self.is(i, "INITIAL_STEP"))
     }
 
@@ -59,12 +63,12 @@ impl Blocks<'_, '_> {
             return self.take(t.kind);
         }
         if self.step_here() {
-            self.open(Block::Step, Tok::Step);
+            self.open(Construct::Step, Tok::Step);
             if self.peek(0).kind == Tok::Id {
                 self.take(Tok::Id);
             }
         } else if self.transition_here() {
-            self.open(Block::Transition, Tok::Transition);
+            self.open(Construct::Transition, Tok::Transition);
         } else if self.action_here() {
             self.next_action();
         } else if !self.unsupported() {
@@ -147,12 +151,12 @@ impl Blocks<'_, '_> {
         let t = self.peek(0);
         match t.kind {
             Tok::Id => return self.name_in_statement(t),
-            Tok::Else => self.branch(t, |f| matches!(f.block, Block::If | Block::Case)),
-            Tok::Elsif => self.branch(t, |f| f.block == Block::If),
-            Tok::Until => self.branch(t, |f| f.block == Block::Repeat),
+            Tok::Else => self.branch(t, |f| matches!(f.block, Construct::If | Construct::Case)),
+            Tok::Elsif => self.branch(t, |f| f.block == Construct::If),
+            Tok::Until => self.branch(t, |f| f.block == Construct::Repeat),
             Tok::Of => {
                 if let Some(frame) = self.stack.last_mut()
-                    && frame.block == Block::Case
+                    && frame.block == Construct::Case
                     && !frame.has_of
                 {
                     frame.has_of = true;
@@ -161,7 +165,7 @@ impl Blocks<'_, '_> {
             }
             Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.late_section(t),
             kind => {
-                if let Some(block) = Block::statement(kind) {
+                if let Some(block) = Construct::statement(kind) {
                     // A condition of a transition has no statements.
                     return self.open(block, kind);
                 }
@@ -178,11 +182,11 @@ impl Blocks<'_, '_> {
             if self.is(0, "JMP") && self.peek(1).kind == Tok::Id && !self.peek(1).first {
                 return self.take(Tok::Jmp);
             }
-            let chart = self.top() == Some(Block::Transition) && (self.step_here() || self.transition_here());
+            let chart = self.top() == Some(Construct::Transition) && (self.step_here() || self.transition_here());
             if chart {
                 return self.close_above(self.stack.len() - 1, t);
             }
-            if self.at_statement() && self.unsupported() {
+            if self.at_statement() && (self.unsupported() || self.misspelled_end(t)) {
                 return;
             }
         }
@@ -221,7 +225,7 @@ impl Blocks<'_, '_> {
                 }
                 return;
             }
-            if Block::closed_by(kind).is_some_and(|b| b.is_pou() || b.is_statement()) {
+            if Construct::closed_by(kind).is_some_and(|b| b.is_pou() || b.is_statement()) {
                 return;
             }
             self.at += 1;

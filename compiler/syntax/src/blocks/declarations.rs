@@ -1,6 +1,6 @@
 //! Heads of POUs, sections of variables, types, resources: where their soft words and ends are.
 
-use super::{Block, Blocks, Phase};
+use super::{Blocks, Construct, Phase, is_close};
 use crate::token::{Tok, Token};
 use plcc_diag::codes;
 
@@ -8,9 +8,12 @@ use plcc_diag::codes;
 const QUALIFIERS: &[&str] =
     &["CONSTANT", "RETAIN", "NON_RETAIN", "PERSISTENT", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"];
 
+/// Words that open a section of variables.
+const SECTIONS: &[&str] = &["VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_EXTERNAL", "VAR_GLOBAL", "VAR_TEMP"];
+
 impl Blocks<'_, '_> {
     /// What stands between the keyword of a POU and its first section.
-    pub(super) fn pou_head(&mut self, block: Block) {
+    pub(super) fn pou_head(&mut self, block: Construct) {
         if self.peek(0).kind != Tok::Id {
             return;
         }
@@ -29,7 +32,7 @@ impl Blocks<'_, '_> {
                 }
             }
         }
-        if block == Block::Function {
+        if block == Construct::Function {
             let (t, next) = (self.peek(0), self.peek(1));
             let type_alone = t.kind == Tok::Id && !t.first && (next.first || next.kind == Tok::Var);
             if t.kind == Tok::Colon {
@@ -114,16 +117,36 @@ impl Blocks<'_, '_> {
     pub(super) fn head_token(&mut self) {
         let t = self.peek(0);
         match t.kind {
-            Tok::Var | Tok::VarConfig | Tok::VarAccess if self.top() != Some(Block::Action) => self.open_section(),
+            Tok::Var | Tok::VarConfig | Tok::VarAccess if self.top() != Some(Construct::Action) => self.open_section(),
             Tok::Id if self.unsupported() => {}
+            Tok::Id if self.misspelled_section(t) => {}
             _ => self.start_body(),
         }
+    }
+
+    /// A word one letter away from a section keyword, before something that looks like a declaration.
+    fn misspelled_section(&mut self, t: Token) -> bool {
+        let declares = self.peek(1).kind == Tok::Id
+            && (matches!(self.peek(2).kind, Tok::Colon | Tok::Comma) || self.peek(2).kind == Tok::Id);
+        let text = t.text(self.text);
+        if !declares || !t.first || text.len() > 13 {
+            return false;
+        }
+        let upper = text.to_ascii_uppercase();
+        let Some(meant) = SECTIONS.iter().find(|s| is_close(&upper, s)) else { return false };
+        self.report.push(
+            self.report
+                .at(codes::MISSPELLED, t.start, t.end, format!("`{text}` is no section of variables"))
+                .help(format!("did you mean `{meant}`?")),
+        );
+        self.open(Construct::Var, Tok::Var);
+        true
     }
 
     /// Opens a section of variables.
     pub(super) fn open_section(&mut self) {
         let kind = self.peek(0).kind;
-        self.open(Block::Var, kind);
+        self.open(Construct::Var, kind);
         while self.peek(0).kind == Tok::Id
             && QUALIFIERS.iter().any(|q| self.is(0, q))
             && !matches!(self.peek(1).kind, Tok::Colon | Tok::Comma | Tok::Dot)
@@ -143,13 +166,14 @@ impl Blocks<'_, '_> {
     pub(super) fn declaration_token(&mut self) {
         let t = self.peek(0);
         let start = self.at_declaration();
-        let in_pou = self.top() == Some(Block::Var) && self.stack.len() > 1;
+        let in_pou = self.top() == Some(Construct::Var) && self.stack.len() > 1;
         match t.kind {
-            Tok::Struct => return self.open(Block::Struct, Tok::Struct),
-            Tok::Union => return self.open(Block::Union, Tok::Union),
+            Tok::Struct => return self.open(Construct::Struct, Tok::Struct),
+            Tok::Union => return self.open(Construct::Union, Tok::Union),
             Tok::Var | Tok::VarConfig | Tok::VarAccess if !self.names_something() => {
                 // The next section begins before this one has ended.
-                let var = self.stack.iter().rposition(|f| matches!(f.block, Block::Var | Block::Type)).unwrap_or(0);
+                let var =
+                    self.stack.iter().rposition(|f| matches!(f.block, Construct::Var | Construct::Type)).unwrap_or(0);
                 return self.close_above(var, t);
             }
             Tok::Id if start && in_pou && self.body_begins() => return self.close_above(self.stack.len() - 1, t),
@@ -164,7 +188,7 @@ impl Blocks<'_, '_> {
             self.reserved_name(t);
             return self.take(Tok::Id);
         }
-        if in_pou && Block::statement(t.kind).is_some() {
+        if in_pou && Construct::statement(t.kind).is_some() {
             return self.close_above(self.stack.len() - 1, t);
         }
         self.take(t.kind);
@@ -199,7 +223,7 @@ impl Blocks<'_, '_> {
         // An END_VAR further on shows that it is a faulty declaration.
         if self.next_end_var < self.at {
             let stop = |t: &Token| {
-                matches!(t.kind, Tok::EndVar | Tok::Var) || Block::closed_by(t.kind).is_some_and(Block::is_pou)
+                matches!(t.kind, Tok::EndVar | Tok::Var) || Construct::closed_by(t.kind).is_some_and(Construct::is_pou)
             };
             self.next_end_var = self.tokens[self.at..].iter().position(stop).map_or(self.tokens.len(), |n| self.at + n);
         }
@@ -240,10 +264,10 @@ impl Blocks<'_, '_> {
             Tok::Id | Tok::RBracket | Tok::RParen if self.is(0, "WITH") => Tok::With,
             Tok::Program | Tok::On | Tok::With | Tok::Task | Tok::Resource | Tok::Configuration => Tok::Id,
             _ if name_follows && self.is(0, "RESOURCE") => {
-                if self.top() == Some(Block::Resource) {
+                if self.top() == Some(Construct::Resource) {
                     self.close_above(self.stack.len() - 1, t);
                 }
-                return self.open(Block::Resource, Tok::Resource);
+                return self.open(Construct::Resource, Tok::Resource);
             }
             _ if name_follows && self.is(0, "TASK") => Tok::Task,
             _ => Tok::Id,
@@ -258,7 +282,7 @@ impl Blocks<'_, '_> {
 
     /// Opens an ACTION and reads its head.
     pub(super) fn open_action(&mut self) {
-        self.open(Block::Action, Tok::Action);
+        self.open(Construct::Action, Tok::Action);
         self.take(Tok::Id);
         if self.peek(0).kind == Tok::Dot && self.peek(1).kind == Tok::Id {
             self.take(Tok::Dot);

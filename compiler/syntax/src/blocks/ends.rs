@@ -1,15 +1,17 @@
 //! END words: what they close, and what is missing or too much.
 
-use super::{Block, Blocks, Frame, Phase};
+use super::{Blocks, Construct, Frame, Phase, is_close};
 use crate::token::{Tok, Token, word_kind};
 use plcc_diag::codes;
 
 /// How far a misplaced END word looks for the right one.
-const MAX_LOOK: usize = 20_000;
+const MAX_LOOK: usize = 5000;
+/// How many outer constructs one message lists.
+const MAX_LISTED: usize = 5;
 
 impl Blocks<'_, '_> {
     /// An END word of `length` tokens (more than one when it is misspelled) that closes a `block`.
-    pub(super) fn end_word(&mut self, block: Block, length: usize) {
+    pub(super) fn end_word(&mut self, block: Construct, length: usize) {
         let t = self.peek(0);
         if let Some(i) = self.stack.iter().rposition(|f| f.block == block) {
             self.close_above(i + 1, t);
@@ -45,17 +47,17 @@ impl Blocks<'_, '_> {
     }
 
     /// Whether the innermost construct, a `block`, has its END word further on.
-    fn closer_ahead(&self, block: Block) -> bool {
+    fn closer_ahead(&self, block: Construct) -> bool {
         let mut depth = 1;
         for t in self.tokens[self.at + 1..].iter().take(MAX_LOOK) {
-            if Block::statement(t.kind) == Some(block) {
+            if Construct::statement(t.kind) == Some(block) {
                 depth += 1;
             } else if t.kind == block.end() {
                 depth -= 1;
                 if depth == 0 {
                     return true;
                 }
-            } else if Block::closed_by(t.kind).is_some_and(|b| !b.is_statement()) {
+            } else if Construct::closed_by(t.kind).is_some_and(|b| !b.is_statement()) {
                 return false;
             }
         }
@@ -90,29 +92,25 @@ impl Blocks<'_, '_> {
     /// What an END word needs before it.
     fn before_end(&mut self) {
         let Some(frame) = self.stack.last() else { return };
-        if frame.phase == Phase::Head && (frame.block.is_pou() || frame.block == Block::Action) {
+        if frame.phase == Phase::Head && (frame.block.is_pou() || frame.block == Construct::Action) {
             self.insert(Tok::BodySt);
         }
     }
 
     /// The `;` behind an END word.
-    fn after_end(&mut self, block: Block, end: u32) {
+    fn after_end(&mut self, block: Construct, end: u32) {
         let next = self.peek(0).kind;
-        match block {
-            _ if block.is_statement() && next != Tok::Semi => {
-                if let Some(t) = self.out.last() {
-                    self.bare_ends.push(*t);
-                }
+        if block.is_statement() {
+            if next != Tok::Semi {
+                self.bare_ends.extend(self.out.last());
                 self.emit(Token::inserted(Tok::Semi, end));
             }
-            Block::Struct | Block::Union if !matches!(next, Tok::Semi | Tok::Assign) => {
+        } else if matches!(block, Construct::Struct | Construct::Union) {
+            if !matches!(next, Tok::Semi | Tok::Assign) {
                 self.emit(Token::inserted(Tok::Semi, end));
             }
-            // Their `;` is part of the grammar.
-            Block::Struct | Block::Union => {}
-            _ if block.is_statement() => {}
-            _ if next == Tok::Semi => self.at += 1,
-            _ => {}
+        } else if next == Tok::Semi {
+            self.at += 1;
         }
         if self.stack.is_empty() {
             let item = std::mem::take(&mut self.out);
@@ -150,16 +148,16 @@ impl Blocks<'_, '_> {
             let frame = self.stack[self.stack.len() - 1];
             self.before_end();
             match frame.block {
-                Block::Repeat if !frame.has_else => {
+                Construct::Repeat if !frame.has_else => {
                     self.insert(Tok::Until);
                     self.insert(Tok::Bad);
                 }
-                Block::Case if !frame.has_of => self.insert(Tok::CaseOf),
+                Construct::Case if !frame.has_of => self.insert(Tok::CaseOf),
                 _ => {}
             }
             self.insert(frame.block.end());
             self.stack.pop();
-            if frame.block.is_statement() || matches!(frame.block, Block::Struct | Block::Union) {
+            if frame.block.is_statement() || matches!(frame.block, Construct::Struct | Construct::Union) {
                 self.insert(Tok::Semi);
             } else if self.stack.is_empty() {
                 let item = std::mem::take(&mut self.out);
@@ -172,7 +170,10 @@ impl Blocks<'_, '_> {
     fn report_unclosed(&mut self, from: usize, t: Token) {
         let open: Vec<Frame> = self.stack[from..].iter().rev().copied().collect();
         let Some(frame) = open.first() else { return };
-        let ends: Vec<&str> = open.iter().map(|f| f.block.end().describe()).collect();
+        let mut ends: Vec<&str> = open.iter().take(MAX_LISTED).map(|f| f.block.end().describe()).collect();
+        if open.len() > MAX_LISTED {
+            ends.push("...");
+        }
         let (ends, are) = (ends.join(", "), if ends.len() > 1 { "are" } else { "is" });
         if let Some((behind, opener)) = frame.else_if.or(frame.behind_else.map(|e| (e, frame.opener))) {
             self.report.push(
@@ -199,12 +200,32 @@ impl Blocks<'_, '_> {
             .report
             .at(codes::UNCLOSED_BLOCK, opener.start, opener.end, format!("{name} opened here is not closed"))
             .also(self.report.span(ended.start, ended.end), there);
-        for outer in &open[1..] {
+        for outer in open.iter().take(MAX_LISTED).skip(1) {
             let name = outer.opener.text(self.text).to_ascii_uppercase();
             let span = self.report.span(outer.opener.start, outer.opener.end);
             message = message.also(span, format!("this {name} is not closed either"));
         }
         self.report.push(message.help(format!("{ends} {are} missing")));
+    }
+
+    /// A word alone as a statement, one letter away from the END word of an open construct.
+    pub(super) fn misspelled_end(&mut self, t: Token) -> bool {
+        let next = self.peek(1);
+        let text = t.text(self.text);
+        if !(next.first || next.kind == Tok::Semi) || !(5..20).contains(&text.len()) {
+            return false;
+        }
+        let upper = text.to_ascii_uppercase();
+        let open = self.stack.iter().rev().map(|f| f.block).find(|b| is_close(&upper, b.end().describe()));
+        let Some(block) = open else { return false };
+        let meant = block.end().describe();
+        self.report.push(
+            self.report
+                .at(codes::MISSPELLED, t.start, t.end, format!("`{text}` is no END word"))
+                .help(format!("did you mean `{meant}`?")),
+        );
+        self.end_word(block, 1);
+        true
     }
 
     /// END words in two parts (`END-IF`, `END IF`) or without underline (`ENDIF`): reported and taken for what they mean.
@@ -238,10 +259,10 @@ impl Blocks<'_, '_> {
 }
 
 /// The construct that a word opens.
-fn opened_by(word: &str) -> Option<Block> {
+fn opened_by(word: &str) -> Option<Construct> {
     if word.len() < 2 || word.len() > 14 || !word.is_ascii() {
         return None;
     }
     let closing = word_kind(&format!("END_{word}"));
-    Block::closed_by(closing)
+    Construct::closed_by(closing)
 }

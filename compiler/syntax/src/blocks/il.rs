@@ -1,6 +1,6 @@
 //! Instruction List: how a body is recognised, and its lines, which end where the text's lines do.
 
-use super::{Block, Blocks};
+use super::{Blocks, Construct};
 use crate::token::{Tok, Token};
 
 /// Operators of IL that are words.
@@ -37,18 +37,18 @@ impl Blocks<'_, '_> {
             return false;
         }
         let operator = listed(OPERATORS, word.text(self.text)) || word.kind == Tok::Op;
-        let alone = next.first || Block::closed_by(next.kind).is_some();
+        let alone = next.first || Construct::closed_by(next.kind).is_some();
         match next.kind {
             _ if alone => operator,
             Tok::LParen => {
                 let Some(end) = self.closing_paren(i + 1) else { return false };
                 let after = self.peek(end + 1);
-                let ends = after.first || Block::closed_by(after.kind).is_some();
+                let ends = after.first || Construct::closed_by(after.kind).is_some();
                 ends && (operator || self.operator_at(end + 1))
             }
             Tok::Id | Tok::Int | Tok::Lit | Tok::Qualified | Tok::Address | Tok::Minus | Tok::Bad => {
                 let mut end = i + 1;
-                while !self.peek(end).first && Block::closed_by(self.peek(end).kind).is_none() {
+                while !self.peek(end).first && Construct::closed_by(self.peek(end).kind).is_none() && end < MAX_LOOK {
                     if matches!(self.peek(end).kind, Tok::Semi | Tok::Assign) {
                         // `CAL t(IN := x)` has its `:=` in parentheses.
                         let call = listed(&["CAL", "CALC", "CALCN"], word.text(self.text));
@@ -115,7 +115,7 @@ impl Blocks<'_, '_> {
         let mut depth = 0u32;
         while self.at < self.tokens.len() {
             let t = self.peek(0);
-            if Block::closed_by(t.kind).is_some() || self.item_here().is_some() {
+            if Construct::closed_by(t.kind).is_some() || self.item_here().is_some() {
                 break;
             }
             if t.first && (depth == 0 || self.operator_at(0)) {
@@ -133,7 +133,7 @@ impl Blocks<'_, '_> {
 
     fn line_ends(&self) -> bool {
         let t = self.peek(0);
-        t.first || Block::closed_by(t.kind).is_some()
+        t.first || Construct::closed_by(t.kind).is_some()
     }
 
     /// Emits the first word of an instruction; whether it opens a deferred operation with the `(` that follows.

@@ -88,9 +88,9 @@ impl Context<'_> {
         edge: Option<(Edge, Span)>,
         init: Option<Init>,
         l: u32,
-        r: u32,
     ) -> Box<VarDecl> {
-        let span = self.span(l, r);
+        let end = init.as_ref().map(|i| i.span).or(edge.map(|e| e.1)).unwrap_or(ty.span).end;
+        let span = self.span(l, end);
         Box::new(VarDecl { names, path: Vec::new(), at, ty, edge, read_write: None, init, span })
     }
 
@@ -102,10 +102,10 @@ impl Context<'_> {
         ty: TypeExpr,
         init: Option<Init>,
         l: u32,
-        r: u32,
     ) -> Box<VarDecl> {
         let names = vec![path.remove(0)];
-        Box::new(VarDecl { names, path, at, ty, edge: None, read_write: None, init, span: self.span(l, r) })
+        let end = init.as_ref().map_or(ty.span, |i| i.span).end;
+        Box::new(VarDecl { names, path, at, ty, edge: None, read_write: None, init, span: self.span(l, end) })
     }
 
     /// A declaration of VAR_ACCESS.
@@ -122,6 +122,12 @@ impl Context<'_> {
     ) -> Box<VarDecl> {
         let span = self.span(l, r);
         Box::new(VarDecl { names: vec![name], path, at, ty, edge: None, read_write, init: None, span })
+    }
+
+    /// A declaration of TYPE.
+    pub fn type_declaration(&self, name: Name, ty: TypeExpr, init: Option<Init>, l: u32) -> Box<TypeDecl> {
+        let end = init.as_ref().map_or(ty.span, |i| i.span).end;
+        Box::new(TypeDecl { name, ty, init, span: self.span(l, end) })
     }
 
     fn type_node(&self, kind: TypeExprKind, below: u32, l: u32, r: u32) -> TypeExpr {

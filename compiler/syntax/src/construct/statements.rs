@@ -100,11 +100,15 @@ impl Context<'_> {
         let calls = ["CAL", "CALC", "CALCN"].iter().any(|c| op.text.eq_ignore_ascii_case(c));
         if calls
             && operands.len() == 1
-            && matches!(operands[0].kind, ExprKind::Call(_))
-            && let Some(Expr { kind: ExprKind::Call(call), .. }) = operands.pop()
+            && let Some(operand) = operands.pop()
         {
-            let Call { callee, args, parens } = *call;
-            return Box::new(IlInst::Call { op, callee, args, parens });
+            match operand.kind {
+                ExprKind::Call(call) => {
+                    let Call { callee, args, parens } = *call;
+                    return Box::new(IlInst::Call { op, callee, args, parens });
+                }
+                kind => operands.push(Expr { kind, ..operand }),
+            }
         }
         Box::new(IlInst::Simple { op, operands })
     }

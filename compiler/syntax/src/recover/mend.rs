@@ -2,6 +2,7 @@
 
 use super::segment::{Surroundings, is_boundary, is_end};
 use super::{Recovery, Refused};
+use crate::blocks::is_close;
 use crate::token::{Tok, Token};
 use plcc_diag::{Code, Diagnostic, codes};
 use std::ops::Range;
@@ -146,6 +147,10 @@ impl Recovery<'_, '_> {
             self.tokens[at].kind = kind;
             return Some(self.report.at(codes::MISSING_WORD, start, end, message).help(help));
         }
+        if self.misspelled(at, word) {
+            self.tokens[at].kind = kind;
+            return Some(self.no_such_word(at, word));
+        }
         if self.kind(at) == Tok::Semi && self.kind(at + 1) == kind {
             self.tokens.remove(at);
             let message = self.report.at(codes::UNEXPECTED, start, end, format!("`;` does not belong before {word}"));
@@ -159,6 +164,22 @@ impl Recovery<'_, '_> {
         let message = self.missing(codes::MISSING_WORD, at, format!("{word} is missing behind this")).help(help);
         self.insert(at, kind);
         Some(message)
+    }
+
+    /// Whether the token `at` is one letter away from `word` and begins no statement.
+    fn misspelled(&self, at: usize, word: &str) -> bool {
+        let Some(t) = self.tokens.get(at).filter(|t| t.kind == Tok::Id) else { return false };
+        if matches!(self.kind(at + 1), Tok::Assign | Tok::Dot | Tok::LBracket | Tok::LParen | Tok::Caret) {
+            return false;
+        }
+        let upper = t.text(self.text).to_ascii_uppercase();
+        is_close(&upper, word) || word.len() == 2 && upper.chars().rev().eq(word.chars())
+    }
+
+    fn no_such_word(&self, at: usize, meant: &str) -> Diagnostic {
+        let t = self.tokens[at];
+        let message = format!("{meant} is expected here, not `{}`", t.text(self.text));
+        self.report.at(codes::MISSPELLED, t.start, t.end, message).help(format!("did you mean `{meant}`?"))
     }
 
     /// `:` and the type in a declaration, `:` behind a label or the name of a step.
@@ -324,6 +345,11 @@ impl Recovery<'_, '_> {
         }
         let kind = self.kind(at);
         let next = self.kind(at + 1);
+        // `ESLE` on a line of its own looks like a statement without `;`.
+        if at > 0 && self.segment(at).start == at - 1 && self.misspelled(at - 1, "ELSE") {
+            self.tokens[at - 1].kind = Tok::Else;
+            return Some(self.no_such_word(at - 1, "ELSE"));
+        }
         let new_statement = kind == Tok::Id
             && matches!(next, Tok::Assign | Tok::LParen | Tok::Dot | Tok::LBracket | Tok::Colon | Tok::Caret);
         let ends = is_end(kind)
