@@ -178,25 +178,16 @@ impl<'i> Resolver<'i> {
     }
 
     fn unknown(&self, path: &str) -> String {
-        let mut best: Option<(usize, &str)> = None;
-        let upper = path.to_ascii_uppercase();
-        for root in self.image.roots.iter().filter(|r| !r.name.contains('$')) {
-            let d = distance(&upper, &root.name.to_ascii_uppercase());
-            if d <= (upper.len() / 4).max(1) && best.is_none_or(|(b, _)| d < b) {
-                best = Some((d, &root.name));
-            }
-        }
-        match best {
-            Some((_, near)) => format!("there is no variable `{path}`; did you mean `{near}`?"),
-            None => format!("there is no variable `{path}`"),
-        }
+        let visible = self.image.roots.iter().map(|r| r.name.as_str()).filter(|n| !n.contains('$'));
+        format!("there is no variable `{path}`{}", hint(path, visible))
     }
 
     fn step(&self, path: &str, part: &Part, leaf: &mut Leaf) -> Result<(), String> {
         match (self.image.types.get(leaf.ty as usize), part) {
             (Some(TypeDesc::Struct { fields, name }), Part::Name(wanted)) => {
                 let Some(field) = fields.iter().find(|f| f.name.eq_ignore_ascii_case(wanted)) else {
-                    return Err(format!("`{path}`: {name} has no `{wanted}`"));
+                    let visible = fields.iter().map(|f| f.name.as_str()).filter(|n| !n.contains('$'));
+                    return Err(format!("`{path}`: {name} has no `{wanted}`{}", hint(wanted, visible)));
                 };
                 leaf.offset += field.offset;
                 leaf.ty = field.ty;
@@ -315,7 +306,8 @@ impl<'i> Resolver<'i> {
                     Some((_, v)) => Ok(v.to_le_bytes()[..elem.bytes() as usize].to_vec()),
                     None => {
                         let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
-                        Err(format!("`{text}` is none of {}", names.join(", ")))
+                        let hint = hint(name, names.iter().copied());
+                        Err(format!("`{text}` is none of {}{hint}", names.join(", ")))
                     }
                 }
             }
@@ -371,6 +363,14 @@ pub fn write(mem: &mut [u8], offset: u32, bit: Option<u8>, bytes: &[u8]) {
             }
         }
     }
+}
+
+/// `; did you mean ...?` when a name is close to the wrong one, else nothing.
+fn hint<'n>(wrong: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let upper = wrong.to_ascii_uppercase();
+    let close = names.map(|name| (distance(&upper, &name.to_ascii_uppercase()), name));
+    let near = close.filter(|(d, name)| *d <= (upper.len() / 4).max(1) && *d < name.len()).min_by_key(|(d, _)| *d);
+    near.map_or(String::new(), |(_, name)| format!("; did you mean `{name}`?"))
 }
 
 /// Edit distance, for suggestions.
@@ -438,6 +438,9 @@ mod tests {
         assert_eq!(r.leaf("Res.g").map(|l| l.offset), Ok(100));
         assert!(r.leaf("P1.fb.m[3,0]").unwrap_err().contains("outside 1..2"));
         assert!(r.leaf("P1.lamb").unwrap_err().contains("did you mean `P1.lamp`"));
+        assert_eq!(hint("Sped", ["n", "speed"].into_iter()), "; did you mean `speed`?");
+        assert_eq!(hint("x", ["n"].into_iter()), "");
+        assert!(!r.leaf("P1.fb.xyz").unwrap_err().contains("did you mean"));
         assert!(r.leaf("P1.fb").unwrap_err().contains("aggregate"));
     }
 

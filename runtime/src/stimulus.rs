@@ -38,60 +38,70 @@ impl Stimulus {
     }
 
     fn parse(name: &str, text: &[u8], resolver: &Resolver) -> Result<Self, String> {
-        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text);
+        // As for sources: UTF-8 and, if that fails, ISO-8859-1 (semantics.md [L1]).
+        let text = match std::str::from_utf8(text) {
+            Ok(text) => text.to_string(),
+            Err(_) => text.iter().map(|b| *b as char).collect(),
+        };
+        let text = text.trim_start_matches('\u{feff}');
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
         let mut records = reader.records();
-        let at = |line: u64, column: usize| format!("{name}:{line}:{column}");
-        let Some(header) = records.next() else { return Err(format!("{}: the header is missing", at(1, 1))) };
+        let at = |record: &csv::StringRecord, field: usize| {
+            let (line, column) = place(text, record, field);
+            format!("{name}:{line}:{column}")
+        };
+        let Some(header) = records.next() else {
+            return Err(format!("{}: the header is missing", format_args!("{name}:1:1")));
+        };
         let header = header.map_err(|e| format!("{name}: {e}"))?;
-        let first = header.get(0).unwrap_or_default().trim().trim_start_matches('\u{feff}');
+        let first = header.get(0).unwrap_or_default().trim();
         if !first.eq_ignore_ascii_case("cycle") {
-            return Err(format!("{}: the first column must be `cycle`, not `{first}`", at(1, 1)));
+            return Err(format!("{}: the first column must be `cycle`, not `{first}`", at(&header, 0)));
         }
         let mut leaves = Vec::new();
         for n in 1..header.len() {
             let path = header.get(n).unwrap_or_default();
-            let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", at(1, column(&header, n))))?;
+            let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", at(&header, n)))?;
             if leaf.constant {
-                return Err(format!("{}: `{}` is a CONSTANT", at(1, column(&header, n)), path.trim()));
+                return Err(format!("{}: `{}` is a CONSTANT", at(&header, n), path.trim()));
+            }
+            if leaves.contains(&leaf) {
+                let place = at(&header, n);
+                return Err(format!("{place}: `{}` stands in two columns", path.trim()));
             }
             leaves.push(leaf);
         }
         let mut rows: Vec<(u64, Vec<Write>)> = Vec::new();
         for record in records {
             let record = record.map_err(|e| format!("{name}: {e}"))?;
-            let line = record.position().map_or(0, csv::Position::line);
             let cycle_text = record.get(0).unwrap_or_default().trim();
             if cycle_text.is_empty() && record.len() <= 1 {
                 continue;
             }
             let cycle: u64 = match cycle_text.parse() {
                 Ok(cycle) if cycle > 0 => cycle,
-                _ => return Err(format!("{}: `{cycle_text}` is no cycle; they count from 1", at(line, 1))),
+                _ => return Err(format!("{}: `{cycle_text}` is no cycle; they count from 1", at(&record, 0))),
             };
             if let Some((before, _)) = rows.last()
                 && *before >= cycle
             {
                 return Err(format!(
                     "{}: cycle {cycle} comes after cycle {before}; rows are in rising order",
-                    at(line, 1)
+                    at(&record, 0)
                 ));
             }
             if record.len() > leaves.len() + 1 {
-                let place = at(line, column(&record, leaves.len() + 1));
+                let place = at(&record, leaves.len() + 1);
                 return Err(format!("{place}: {} fields, the header has {}", record.len(), leaves.len() + 1));
             }
             let mut writes = Vec::new();
             for (n, leaf) in leaves.iter().enumerate() {
-                let text = record.get(n + 1).unwrap_or_default();
-                if text.trim().is_empty() {
+                let cell = record.get(n + 1).unwrap_or_default();
+                if cell.trim().is_empty() {
                     continue;
                 }
-                let bytes = resolver.bytes(leaf, text).map_err(|e| {
-                    format!(
-                        "{}: {}: {e}",
-                        at(line, column(&record, n + 1)),
-                        header.get(n + 1).unwrap_or_default().trim()
-                    )
+                let bytes = resolver.bytes(leaf, cell).map_err(|e| {
+                    format!("{}: {}: {e}", at(&record, n + 1), header.get(n + 1).unwrap_or_default().trim())
                 })?;
                 writes.push(Write { offset: leaf.offset, bit: leaf.bit, bytes });
             }
@@ -114,9 +124,28 @@ impl Stimulus {
     }
 }
 
-/// The column, from 1, where a field starts in its line (quotes not counted).
-fn column(record: &csv::StringRecord, field: usize) -> usize {
-    1 + record.iter().take(field).map(|f| f.chars().count() + 1).sum::<usize>()
+/// Line and column, from 1 and in characters, where a field of a record starts.
+fn place(text: &str, record: &csv::StringRecord, field: usize) -> (usize, usize) {
+    let start = record.position().map_or(0, |p| p.byte() as usize);
+    let rest = text.get(start..).unwrap_or_default();
+    // The reader counts blank lines to the record behind them.
+    let own = rest.trim_start_matches(['\r', '\n']);
+    let before = &text[..text.len() - own.len()];
+    let (mut line, mut column) = (1 + before.matches('\n').count(), 1);
+    let (mut fields, mut quoted) = (0, false);
+    for c in own.chars() {
+        if fields == field {
+            break;
+        }
+        column += 1;
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields += 1,
+            '\n' => (line, column) = (line + 1, 1),
+            _ => {}
+        }
+    }
+    (line, column)
 }
 
 #[cfg(test)]
@@ -166,6 +195,9 @@ mod tests {
         assert!(error("cycle,M.a\n1,1\n1,2\n").starts_with("s.csv:3:1: cycle 1 comes after cycle 1"));
         assert!(error("cycle,M.a\n0,1\n").starts_with("s.csv:2:1:"));
         assert!(error("cycle,M.a\n1,1,2\n").starts_with("s.csv:2:5:"));
+        assert!(error("\u{feff}cycle,\"M.a\",M.x\r\n").starts_with("s.csv:1:13:"));
+        assert!(error("cycle,M.a,M.b\r\n\r\n1,\"5\",x\r\n").starts_with("s.csv:3:7:"));
+        assert!(error("cycle,M.a,M.a\n").starts_with("s.csv:1:11: `M.a` stands in two columns"));
         assert!(error("cycle,M.c\n").contains("CONSTANT"));
     }
 }
