@@ -72,7 +72,11 @@ fn measure(text: &str, slices: i64, per_slice: i64) -> [Times; 2] {
             lanes.iter_mut().for_each(|lane| lane.times.clear());
         }
     }
-    assert_eq!(Lane::bytes(&mut lanes[0].memory.clone()), Lane::bytes(&mut lanes[1].memory.clone()), "engines disagree");
+    assert_eq!(
+        Lane::bytes(&mut lanes[0].memory.clone()),
+        Lane::bytes(&mut lanes[1].memory.clone()),
+        "engines disagree"
+    );
     lanes.map(|mut lane| {
         lane.times.sort_unstable();
         Times(std::mem::take(&mut lane.times))
@@ -82,7 +86,9 @@ fn measure(text: &str, slices: i64, per_slice: i64) -> [Times; 2] {
 fn main() {
     let quick = !std::env::args().any(|a| a == "--bench");
     let (slices, per_slice) = if quick { (3, 20) } else { (50, 1000) };
-    println!("| program | interp median | p99.9 | worst | native median | p99.9 | worst | median ratio | worst ratio |");
+    println!(
+        "| program | interp median | p99.9 | worst | native median | p99.9 | worst | median ratio | worst ratio |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
     for (name, text) in PROGRAMS {
         let [a, b] = measure(text, slices, per_slice);

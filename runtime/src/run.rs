@@ -14,6 +14,7 @@ use crate::trace::{self, Trace};
 use crate::vcd::Vcd;
 use crate::watchdog::Watchdog;
 use crate::{fault, signals};
+use std::io::Write;
 use std::path::Path;
 
 /// Runs it; messages go to standard error.
@@ -38,12 +39,15 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     let stimulus = flags.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose()?;
     // A watch list alone is read on standard output.
     let alone = (flags.watch.is_some() && flags.vcd.is_none()).then_some(Path::new("-"));
+    let trace_path = flags.trace.as_deref().or(alone);
+    if [trace_path, flags.vcd.as_deref()] == [Some(Path::new("-")); 2] {
+        return Err((2, "--trace and --vcd cannot both be on standard output".into()));
+    }
     // A reader that went away is no failure.
     let unwritable = |e: String| (if e.is_empty() { 0 } else { 3 }, e);
     let vcd =
         flags.vcd.as_deref().map(|path| Vcd::open(path, image, columns.clone())).transpose().map_err(unwritable)?;
-    let trace = flags.trace.as_deref().or(alone).map(|path| Trace::open(path, columns)).transpose();
-    let trace = trace.map_err(unwritable)?;
+    let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(unwritable)?;
     signals::install();
     let retain_file = flags.retain.as_deref().or(image.retain_file.as_deref().map(Path::new));
     let (retain, restored) = match retain_file.map(|path| Retain::open(path, image, &resolver)).transpose()? {
@@ -78,7 +82,14 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     };
     let end = scan.run();
     if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
-        eprint!("{}", stats.report(&image.tasks, scan.schedule.overruns(), format == "json"));
+        let report = stats.report(&image.tasks, scan.schedule.overruns(), format == "json");
+        // A result; but where the trace is on standard output, nothing else may stand there.
+        if [trace_path, flags.vcd.as_deref()].contains(&Some(Path::new("-"))) {
+            eprint!("{report}");
+        } else {
+            // A reader that went away does not matter any more.
+            let _ = std::io::stdout().write_all(report.as_bytes());
+        }
     }
     let kept = scan.retain.take().map_or(Ok(()), Retain::finish);
     match end {

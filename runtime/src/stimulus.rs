@@ -34,40 +34,34 @@ impl Stimulus {
             std::fs::File::open(path).map_err(io)?.read_to_end(&mut text).map_err(io)?;
         }
         let shown = if name == "-" { "<stdin>" } else { &name };
-        Self::parse(shown, &text, resolver).map_err(|message| (2, message))
+        // As sources: UTF-8 or, if it is not, Latin-1 (semantics.md \[L1\]).
+        let text = String::from_utf8(text).unwrap_or_else(|e| e.into_bytes().into_iter().map(char::from).collect());
+        Self::parse(shown, text.trim_start_matches('\u{feff}'), resolver).map_err(|message| (2, message))
     }
 
-    fn parse(name: &str, text: &[u8], resolver: &Resolver) -> Result<Self, String> {
-        // As for sources: UTF-8 and, if that fails, ISO-8859-1 (semantics.md [L1]).
-        let text = match std::str::from_utf8(text) {
-            Ok(text) => text.to_string(),
-            Err(_) => text.iter().map(|b| *b as char).collect(),
-        };
-        let text = text.trim_start_matches('\u{feff}');
+    fn parse(name: &str, text: &str, resolver: &Resolver) -> Result<Self, String> {
         let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
         let mut records = reader.records();
-        let at = |record: &csv::StringRecord, field: usize| {
-            let (line, column) = place(text, record, field);
+        let place = |record: &csv::StringRecord, field: usize| {
+            let (line, column) = place(text, record.position().map_or(0, |p| p.byte() as usize), field);
             format!("{name}:{line}:{column}")
         };
-        let Some(header) = records.next() else {
-            return Err(format!("{}: the header is missing", format_args!("{name}:1:1")));
-        };
+        let Some(header) = records.next() else { return Err(format!("{name}:1:1: the header is missing")) };
         let header = header.map_err(|e| format!("{name}: {e}"))?;
         let first = header.get(0).unwrap_or_default().trim();
         if !first.eq_ignore_ascii_case("cycle") {
-            return Err(format!("{}: the first column must be `cycle`, not `{first}`", at(&header, 0)));
+            return Err(format!("{}: the first column must be `cycle`, not `{first}`", place(&header, 0)));
         }
         let mut leaves = Vec::new();
+        let mut named = std::collections::HashSet::new();
         for n in 1..header.len() {
             let path = header.get(n).unwrap_or_default();
-            let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", at(&header, n)))?;
+            let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", place(&header, n)))?;
             if leaf.constant {
-                return Err(format!("{}: `{}` is a CONSTANT", at(&header, n), path.trim()));
+                return Err(format!("{}: `{}` is a CONSTANT", place(&header, n), path.trim()));
             }
-            if leaves.contains(&leaf) {
-                let place = at(&header, n);
-                return Err(format!("{place}: `{}` stands in two columns", path.trim()));
+            if !named.insert((leaf.offset, leaf.bit)) {
+                return Err(format!("{}: `{}` stands in two columns", place(&header, n), path.trim()));
             }
             leaves.push(leaf);
         }
@@ -80,28 +74,28 @@ impl Stimulus {
             }
             let cycle: u64 = match cycle_text.parse() {
                 Ok(cycle) if cycle > 0 => cycle,
-                _ => return Err(format!("{}: `{cycle_text}` is no cycle; they count from 1", at(&record, 0))),
+                _ => return Err(format!("{}: `{cycle_text}` is no cycle; they count from 1", place(&record, 0))),
             };
             if let Some((before, _)) = rows.last()
                 && *before >= cycle
             {
                 return Err(format!(
                     "{}: cycle {cycle} comes after cycle {before}; rows are in rising order",
-                    at(&record, 0)
+                    place(&record, 0)
                 ));
             }
             if record.len() > leaves.len() + 1 {
-                let place = at(&record, leaves.len() + 1);
+                let place = place(&record, leaves.len() + 1);
                 return Err(format!("{place}: {} fields, the header has {}", record.len(), leaves.len() + 1));
             }
             let mut writes = Vec::new();
             for (n, leaf) in leaves.iter().enumerate() {
-                let cell = record.get(n + 1).unwrap_or_default();
-                if cell.trim().is_empty() {
+                let text = record.get(n + 1).unwrap_or_default();
+                if text.trim().is_empty() {
                     continue;
                 }
-                let bytes = resolver.bytes(leaf, cell).map_err(|e| {
-                    format!("{}: {}: {e}", at(&record, n + 1), header.get(n + 1).unwrap_or_default().trim())
+                let bytes = resolver.bytes(leaf, text).map_err(|e| {
+                    format!("{}: {}: {e}", place(&record, n + 1), header.get(n + 1).unwrap_or_default().trim())
                 })?;
                 writes.push(Write { offset: leaf.offset, bit: leaf.bit, bytes });
             }
@@ -124,28 +118,26 @@ impl Stimulus {
     }
 }
 
-/// Line and column, from 1 and in characters, where a field of a record starts.
-fn place(text: &str, record: &csv::StringRecord, field: usize) -> (usize, usize) {
-    let start = record.position().map_or(0, |p| p.byte() as usize);
-    let rest = text.get(start..).unwrap_or_default();
-    // The reader counts blank lines to the record behind them.
-    let own = rest.trim_start_matches(['\r', '\n']);
-    let before = &text[..text.len() - own.len()];
-    let (mut line, mut column) = (1 + before.matches('\n').count(), 1);
+/// Line and column, from 1, where a field of the record that starts at or after a byte begins; quoted fields (RFC 4180) may
+/// hold commas and line ends.
+fn place(text: &str, start: usize, field: usize) -> (usize, usize) {
+    let rest = &text[start.min(text.len())..];
+    let start = text.len() - rest.trim_start_matches(['\r', '\n']).len();
+    let mut at = start;
     let (mut fields, mut quoted) = (0, false);
-    for c in own.chars() {
+    for (n, c) in text[start..].char_indices() {
         if fields == field {
             break;
         }
-        column += 1;
         match c {
             '"' => quoted = !quoted,
             ',' if !quoted => fields += 1,
-            '\n' => (line, column) = (line + 1, 1),
             _ => {}
         }
+        at = start + n + c.len_utf8();
     }
-    (line, column)
+    let line_start = text[..at].rfind('\n').map_or(0, |n| n + 1);
+    (1 + text[..at].matches('\n').count(), 1 + text[line_start..at].chars().count())
 }
 
 #[cfg(test)]
@@ -174,7 +166,7 @@ mod tests {
     fn values_stay_until_overwritten() {
         let image = image();
         let resolver = Resolver::new(&image);
-        let mut s = Stimulus::parse("s.csv", b"cycle,M.a,M.b\n2,5,\n4,,16#10\n", &resolver).unwrap();
+        let mut s = Stimulus::parse("s.csv", "cycle,M.a,M.b\n2,5,\n4,,16#10\n", &resolver).unwrap();
         let mut mem = vec![0; 80];
         let mut seen = Vec::new();
         for cycle in 1..=4 {
@@ -188,16 +180,19 @@ mod tests {
     fn mistakes_have_a_place() {
         let image = image();
         let resolver = Resolver::new(&image);
-        let error = |text: &str| Stimulus::parse("s.csv", text.as_bytes(), &resolver).unwrap_err();
+        let error = |text: &str| Stimulus::parse("s.csv", text, &resolver).unwrap_err();
         assert!(error("cycle,M.x\n").starts_with("s.csv:1:7: there is no variable `M.x`"));
         assert!(error("time,M.a\n").starts_with("s.csv:1:1:"));
         assert!(error("cycle,M.a\n1,TRUE\n").starts_with("s.csv:2:3:"));
         assert!(error("cycle,M.a\n1,1\n1,2\n").starts_with("s.csv:3:1: cycle 1 comes after cycle 1"));
         assert!(error("cycle,M.a\n0,1\n").starts_with("s.csv:2:1:"));
         assert!(error("cycle,M.a\n1,1,2\n").starts_with("s.csv:2:5:"));
-        assert!(error("\u{feff}cycle,\"M.a\",M.x\r\n").starts_with("s.csv:1:13:"));
-        assert!(error("cycle,M.a,M.b\r\n\r\n1,\"5\",x\r\n").starts_with("s.csv:3:7:"));
-        assert!(error("cycle,M.a,M.a\n").starts_with("s.csv:1:11: `M.a` stands in two columns"));
+        assert!(error("cycle,M.a,m.A\n").starts_with("s.csv:1:11: `m.A` stands in two columns"));
         assert!(error("cycle,M.c\n").contains("CONSTANT"));
+        // Quotes, blank lines and line ends inside quotes count as they stand in the file.
+        assert!(error("cycle,M.a,M.b\n1,\"5\",x\n").starts_with("s.csv:2:7:"));
+        assert!(error("cycle,M.a\r\n\r\n1,1\r\n\r\n2,x\r\n").starts_with("s.csv:5:3:"));
+        assert!(error("cycle,M.a,M.b\n1,\"\n5\",x\n").starts_with("s.csv:3:4:"));
+        assert!(error("").starts_with("s.csv:1:1:"));
     }
 }

@@ -114,3 +114,26 @@ fn field(line: &mut String, text: &str) {
         line.push_str(text);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_quoted_where_they_must_be() {
+        let quoted = |text: &str| {
+            let mut line = String::new();
+            field(&mut line, text);
+            line
+        };
+        assert_eq!(quoted("T#5s"), "T#5s");
+        assert_eq!(quoted("Main.m[1,2]"), "\"Main.m[1,2]\"");
+        assert_eq!(quoted("'say \"x\"'"), "\"'say \"\"x\"\"'\"");
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_no_mistake() {
+        assert_eq!(tolerate(Err(ErrorKind::BrokenPipe.into())), Err(String::new()));
+        assert!(tolerate(Err(ErrorKind::StorageFull.into())).unwrap_err().contains("cannot write the trace"));
+    }
+}

@@ -42,6 +42,15 @@ macro_rules! compare {
     };
 }
 
+/// Between the infinities, both excluded; a comparison with a NaN is FALSE.
+fn is_valid(t: Elem, x: Val, e: &mut dyn Emit) -> Val {
+    let r = t.repr();
+    let infinity = if r == Repr::F32 { u64::from(f32::INFINITY.to_bits()) } else { f64::INFINITY.to_bits() };
+    let infinity = e.constant(r, infinity);
+    let magnitude = e.prim(PrimOp::FAbs, r, &[x]);
+    e.prim(PrimOp::FLt, r, &[magnitude, infinity])
+}
+
 pub(super) fn rows() -> Vec<StdFn> {
     use Generic::*;
     use Type::*;
@@ -157,7 +166,39 @@ pub(super) fn rows() -> Vec<StdFn> {
     ] {
         rows.push(row(name, "", Real, &one, formula, "Rounds to an integral real."));
     }
+    rows.push(
+        row(
+            "IS_VALID",
+            "Ed. 3 table 38",
+            Real,
+            &one,
+            Meaning::Formula(|t, a, e| Some(is_valid(t, a[0], e))),
+            "TRUE if IN is a number: neither NaN nor infinite.",
+        )
+        .gives(Fixed(Elem::Bool)),
+    );
     let ne = row("NE", "Ed. 2 table 28", Elementary, &two, compare!(Ne), "TRUE if the arguments differ.");
     rows.push(ne.gives(Fixed(Elem::Bool)));
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fold::Folder;
+
+    #[test]
+    fn valid_numbers() {
+        let valid = |t: Elem, raw: u64| {
+            let mut e = Folder::new();
+            let x = e.value(raw);
+            let v = find("IS_VALID").unwrap().emit(t, &[x], &mut e).unwrap();
+            e.raw(v) == 1
+        };
+        for (x, want) in [(0.0, true), (f64::MAX, true), (-1.5, true), (f64::NAN, false), (f64::NEG_INFINITY, false)] {
+            assert_eq!(valid(Elem::Lreal, x.to_bits()), want, "{x}");
+        }
+        assert!(valid(Elem::Real, u64::from(f32::MIN.to_bits())));
+        assert!(!valid(Elem::Real, u64::from(f32::INFINITY.to_bits())));
+    }
 }

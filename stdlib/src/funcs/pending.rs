@@ -4,15 +4,13 @@ use super::*;
 use crate::elem::ALL;
 
 const STRINGS: [&str; 9] = ["LEN", "LEFT", "RIGHT", "MID", "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND"];
-const OTHERS: [&str; 16] = [
-    "DAY_OF_WEEK",
+const OTHERS: [&str; 14] = [
     "SPLIT_DATE",
     "SPLIT_TOD",
     "SPLIT_DT",
     "CONCAT_DATE",
     "CONCAT_TOD",
     "CONCAT_DT",
-    "IS_VALID",
     "IS_VALID_BCD",
     "TO_BIG_ENDIAN",
     "TO_LITTLE_ENDIAN",
