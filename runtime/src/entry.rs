@@ -29,6 +29,11 @@ pub unsafe extern "C" fn plcc_main(
             .collect();
         (args, std::slice::from_raw_parts(image, image_len))
     };
+    // A panic is a bug, here or in plcc; the exit code says so (docs/cli.md).
+    std::panic::set_hook(Box::new(|panic| {
+        eprintln!("a bug in plcc's runtime, please report it: {panic}");
+        std::process::exit(70);
+    }));
     let image = match Image::decode(bytes) {
         Ok(image) => image,
         Err(_) => {

@@ -28,6 +28,8 @@ pub struct Image {
     pub areas: [(u32, u32); 3],
     /// Byte ranges that a warm start keeps.
     pub retain: Vec<(u32, u32)>,
+    /// Where their values live when `--retain` does not say it.
+    pub retain_file: Option<String>,
     /// Names of source files.
     pub files: Vec<String>,
     /// Where checks come from; a fault names a row.

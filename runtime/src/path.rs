@@ -104,6 +104,15 @@ impl<'i> Resolver<'i> {
         Ok(out)
     }
 
+    /// Every leaf, hidden ones too.
+    pub(crate) fn every_leaf(&self) -> Result<Vec<(String, Leaf)>, String> {
+        let mut out = Vec::new();
+        for root in &self.image.roots {
+            self.expand_with(&root.name, &self.root_leaf(root), true, &mut out)?;
+        }
+        Ok(out)
+    }
+
     /// One variable, which must not be an aggregate.
     pub fn leaf(&self, path: &str) -> Result<Leaf, String> {
         let found = self.find(path)?;
@@ -169,25 +178,16 @@ impl<'i> Resolver<'i> {
     }
 
     fn unknown(&self, path: &str) -> String {
-        let mut best: Option<(usize, &str)> = None;
-        let upper = path.to_ascii_uppercase();
-        for root in self.image.roots.iter().filter(|r| !r.name.contains('$')) {
-            let d = distance(&upper, &root.name.to_ascii_uppercase());
-            if d <= (upper.len() / 4).max(1) && best.is_none_or(|(b, _)| d < b) {
-                best = Some((d, &root.name));
-            }
-        }
-        match best {
-            Some((_, near)) => format!("there is no variable `{path}`; did you mean `{near}`?"),
-            None => format!("there is no variable `{path}`"),
-        }
+        let visible = self.image.roots.iter().map(|r| r.name.as_str()).filter(|n| !n.contains('$'));
+        format!("there is no variable `{path}`{}", hint(path, visible))
     }
 
     fn step(&self, path: &str, part: &Part, leaf: &mut Leaf) -> Result<(), String> {
         match (self.image.types.get(leaf.ty as usize), part) {
             (Some(TypeDesc::Struct { fields, name }), Part::Name(wanted)) => {
                 let Some(field) = fields.iter().find(|f| f.name.eq_ignore_ascii_case(wanted)) else {
-                    return Err(format!("`{path}`: {name} has no `{wanted}`"));
+                    let visible = fields.iter().map(|f| f.name.as_str()).filter(|n| !n.contains('$'));
+                    return Err(format!("`{path}`: {name} has no `{wanted}`{}", hint(wanted, visible)));
                 };
                 leaf.offset += field.offset;
                 leaf.ty = field.ty;
@@ -214,14 +214,18 @@ impl<'i> Resolver<'i> {
     }
 
     fn expand(&self, name: &str, leaf: &Leaf, out: &mut Vec<(String, Leaf)>) -> Result<(), String> {
+        self.expand_with(name, leaf, false, out)
+    }
+
+    fn expand_with(&self, name: &str, leaf: &Leaf, hidden: bool, out: &mut Vec<(String, Leaf)>) -> Result<(), String> {
         if out.len() >= MAX_COLUMNS {
             return Err(format!("`{name}` makes more than {MAX_COLUMNS} columns; watch single elements"));
         }
         match self.image.types.get(leaf.ty as usize) {
             Some(TypeDesc::Struct { fields, .. }) => {
-                for field in fields.iter().filter(|f| !f.name.contains('$')) {
+                for field in fields.iter().filter(|f| hidden || !f.name.contains('$')) {
                     let inner = Leaf { offset: leaf.offset + field.offset, ty: field.ty, ..leaf.clone() };
-                    self.expand(&format!("{name}.{}", field.name), &inner, out)?;
+                    self.expand_with(&format!("{name}.{}", field.name), &inner, hidden, out)?;
                 }
             }
             Some(TypeDesc::Array { dims, elem, stride }) => {
@@ -230,7 +234,7 @@ impl<'i> Resolver<'i> {
                 for n in 0..count {
                     let text: Vec<String> = index.iter().map(i64::to_string).collect();
                     let inner = Leaf { offset: leaf.offset + n as u32 * stride, ty: *elem, ..leaf.clone() };
-                    self.expand(&format!("{name}[{}]", text.join(",")), &inner, out)?;
+                    self.expand_with(&format!("{name}[{}]", text.join(",")), &inner, hidden, out)?;
                     for (i, (low, high)) in index.iter_mut().zip(dims).rev() {
                         *i += 1;
                         if *i <= *high {
@@ -259,11 +263,11 @@ impl<'i> Resolver<'i> {
         let _ = match self.image.types.get(leaf.ty as usize) {
             Some(TypeDesc::Elem(code)) => {
                 let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
-                value::write_scalar(out, elem, read(mem, leaf, elem))
+                value::write_scalar(out, elem, raw(mem, leaf, elem))
             }
             Some(TypeDesc::Enum { elem, values }) => {
                 let elem = Elem::from_code(*elem).unwrap_or(Elem::Int);
-                let number = elem.to_i128(read(mem, leaf, elem));
+                let number = elem.to_i128(raw(mem, leaf, elem));
                 match values.iter().find(|(_, v)| i128::from(*v) == number) {
                     Some((name, _)) => out.write_str(name),
                     None => write!(out, "{number}"),
@@ -280,7 +284,7 @@ impl<'i> Resolver<'i> {
                 let end = units.iter().position(|u| *u == 0).unwrap_or(units.len());
                 value::write_wstring(out, &units[..end])
             }
-            _ => value::write_scalar(out, Elem::Dword, read(mem, leaf, Elem::Dword)),
+            _ => value::write_scalar(out, Elem::Dword, raw(mem, leaf, Elem::Dword)),
         };
     }
 
@@ -302,7 +306,8 @@ impl<'i> Resolver<'i> {
                     Some((_, v)) => Ok(v.to_le_bytes()[..elem.bytes() as usize].to_vec()),
                     None => {
                         let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
-                        Err(format!("`{text}` is none of {}", names.join(", ")))
+                        let hint = hint(name, names.iter().copied());
+                        Err(format!("`{text}` is none of {}{hint}", names.join(", ")))
                     }
                 }
             }
@@ -328,18 +333,18 @@ impl<'i> Resolver<'i> {
 }
 
 /// The register value of an elementary variable.
-fn read(mem: &[u8], leaf: &Leaf, elem: Elem) -> u64 {
+pub(crate) fn raw(mem: &[u8], leaf: &Leaf, elem: Elem) -> u64 {
     let at = leaf.offset as usize;
     let mut bytes = [0; 8];
     let width = elem.bytes() as usize;
     if let Some(source) = mem.get(at..at + width) {
         bytes[..width].copy_from_slice(source);
     }
-    let raw = u64::from_le_bytes(bytes);
+    let value = u64::from_le_bytes(bytes);
     match (leaf.bit, elem) {
-        (Some(bit), _) => raw >> bit & 1,
-        (None, Elem::Bool) => u64::from(raw != 0),
-        _ => raw,
+        (Some(bit), _) => value >> bit & 1,
+        (None, Elem::Bool) => u64::from(value != 0),
+        _ => value,
     }
 }
 
@@ -358,6 +363,14 @@ pub fn write(mem: &mut [u8], offset: u32, bit: Option<u8>, bytes: &[u8]) {
             }
         }
     }
+}
+
+/// `; did you mean ...?` when a name is close to the wrong one, else nothing.
+fn hint<'n>(wrong: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let upper = wrong.to_ascii_uppercase();
+    let close = names.map(|name| (distance(&upper, &name.to_ascii_uppercase()), name));
+    let near = close.filter(|(d, name)| *d <= (upper.len() / 4).max(1) && *d < name.len()).min_by_key(|(d, _)| *d);
+    near.map_or(String::new(), |(_, name)| format!("; did you mean `{name}`?"))
 }
 
 /// Edit distance, for suggestions.
@@ -425,6 +438,9 @@ mod tests {
         assert_eq!(r.leaf("Res.g").map(|l| l.offset), Ok(100));
         assert!(r.leaf("P1.fb.m[3,0]").unwrap_err().contains("outside 1..2"));
         assert!(r.leaf("P1.lamb").unwrap_err().contains("did you mean `P1.lamp`"));
+        assert_eq!(hint("Sped", ["n", "speed"].into_iter()), "; did you mean `speed`?");
+        assert_eq!(hint("x", ["n"].into_iter()), "");
+        assert!(!r.leaf("P1.fb.xyz").unwrap_err().contains("did you mean"));
         assert!(r.leaf("P1.fb").unwrap_err().contains("aggregate"));
     }
 

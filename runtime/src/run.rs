@@ -4,12 +4,14 @@ use crate::cli::RunFlags;
 use crate::clock::Clock;
 use crate::engine::{Engine, Region};
 use crate::image::Image;
-use crate::path::Resolver;
+use crate::path::{self, Resolver};
+use crate::retain::Retain;
 use crate::scan::{End, Scan};
 use crate::stats::Stats;
 use crate::stimulus::Stimulus;
 use crate::task::{Schedule, base_tick};
 use crate::trace::{self, Trace};
+use crate::vcd::Vcd;
 use crate::watchdog::Watchdog;
 use crate::{fault, signals};
 use std::io::Write;
@@ -29,26 +31,35 @@ pub fn run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> u8 {
 }
 
 fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> Result<u8, (u8, String)> {
-    for (flag, given) in [("--vcd", flags.vcd.is_some()), ("--retain", flags.retain.is_some())] {
-        if given {
-            return Err((2, format!("{flag} is not implemented yet")));
-        }
-    }
     let resolver = Resolver::new(image);
-    let columns = match (&flags.trace, &flags.watch) {
-        (None, None) => Vec::new(),
-        (_, watch) => trace::columns(watch.as_deref(), &resolver).map_err(|e| (2, e))?,
+    let columns = match (&flags.trace, &flags.vcd, &flags.watch) {
+        (None, None, None) => Vec::new(),
+        (_, _, watch) => trace::columns(watch.as_deref(), &resolver).map_err(|e| (2, e))?,
     };
     let stimulus = flags.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose()?;
     // A watch list alone is read on standard output.
-    let trace_path = flags.trace.as_deref().or(flags.watch.as_ref().map(|_| Path::new("-")));
-    let trace = trace_path
-        .map(|path| Trace::open(path, columns))
-        .transpose()
-        .map_err(|e| (if e.is_empty() { 0 } else { 3 }, e))?;
+    let alone = (flags.watch.is_some() && flags.vcd.is_none()).then_some(Path::new("-"));
+    let trace_path = flags.trace.as_deref().or(alone);
+    if [trace_path, flags.vcd.as_deref()] == [Some(Path::new("-")); 2] {
+        return Err((2, "--trace and --vcd cannot both be on standard output".into()));
+    }
+    // A reader that went away is no failure.
+    let unwritable = |e: String| (if e.is_empty() { 0 } else { 3 }, e);
+    let vcd =
+        flags.vcd.as_deref().map(|path| Vcd::open(path, image, columns.clone())).transpose().map_err(unwritable)?;
+    let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(unwritable)?;
     signals::install();
+    let retain_file = flags.retain.as_deref().or(image.retain_file.as_deref().map(Path::new));
+    let (retain, restored) = match retain_file.map(|path| Retain::open(path, image, &resolver)).transpose()? {
+        Some((retain, restored)) => (Some(retain), restored),
+        None => (None, Vec::new()),
+    };
     let mut mem = Region::new(image.region_bytes as usize);
+    // Variables that the retain file does not know yet need their initial values even in a warm start.
     engine.init(&mut mem, true);
+    for value in &restored {
+        path::write(mem.as_mut_slice(), value.offset, value.bit, &value.bytes);
+    }
     // SAFETY: `mem` lives to the end of this function, behind the watchdog's drop: it is declared before.
     let mut watchdog = unsafe { Watchdog::new(mem.as_mut_ptr(), &image.tasks) }
         .map_err(|e| (3, format!("cannot start the watchdog thread: {e}")))?;
@@ -63,6 +74,9 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
         schedule: Schedule::new(&image.tasks),
         stimulus,
         trace,
+        vcd,
+        interval_ns,
+        retain,
         stats: flags.stats.as_ref().map(|_| Stats::new(&image.tasks)),
         cycles: flags.cycles,
     };
@@ -70,17 +84,21 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
         let report = stats.report(&image.tasks, scan.schedule.overruns(), format == "json");
         // A result; but where the trace is on standard output, nothing else may stand there.
-        if trace_path == Some(Path::new("-")) {
+        if [trace_path, flags.vcd.as_deref()].contains(&Some(Path::new("-"))) {
             eprint!("{report}");
         } else {
             // A reader that went away does not matter any more.
             let _ = std::io::stdout().write_all(report.as_bytes());
         }
     }
+    let kept = scan.retain.take().map_or(Ok(()), Retain::finish);
     match end {
-        End::Stopped => Ok(0),
+        End::Stopped => kept.map(|()| 0).map_err(|e| (3, e)),
         End::Fault(number, task, cycle) => {
             eprint!("{}", fault::describe(image, scan.mem, number, task, cycle));
+            if let Err(e) = kept {
+                eprintln!("{}: {e}", image.name);
+            }
             Ok(1)
         }
         End::Trace(message) if message.is_empty() => Ok(0),
@@ -160,6 +178,32 @@ mod tests {
         assert_eq!(run(&image(), &mut Counter { limit: 12 }, &flags), 1);
         assert_eq!(std::fs::read_to_string(&trace).unwrap(), "cycle,m.N\n1,2\n2,3\n3,11\n4,12\n");
         let _ = (std::fs::remove_file(trace), std::fs::remove_file(stimulus));
+    }
+
+    #[test]
+    fn retained_values_of_the_last_finished_cycle_come_back() {
+        let retain = scratch("retain");
+        let _ = std::fs::remove_file(&retain);
+        let image = Image { retain: vec![(64, 2)], ..image() };
+        let trace = scratch("retain.csv");
+        let flags = RunFlags {
+            cycles: Some(3),
+            virtual_time: true,
+            retain: Some(retain.clone()),
+            trace: Some(trace.clone()),
+            ..RunFlags::default()
+        };
+        let traced = || std::fs::read_to_string(&trace).unwrap();
+        assert_eq!(run(&image, &mut Counter { limit: -9 }, &flags), 0);
+        assert_eq!(traced(), "cycle,M.n\n1,2\n2,3\n3,4\n");
+        // The third cycle of this run, which would make it 7, faults.
+        assert_eq!(run(&image, &mut Counter { limit: 6 }, &flags), 1);
+        assert_eq!(traced(), "cycle,M.n\n1,5\n2,6\n");
+        assert_eq!(run(&image, &mut Counter { limit: -9 }, &flags), 0);
+        assert_eq!(traced(), "cycle,M.n\n1,7\n2,8\n3,9\n");
+        std::fs::write(&retain, "something else").unwrap();
+        assert_eq!(run(&image, &mut Counter { limit: -9 }, &flags), 3);
+        let _ = (std::fs::remove_file(trace), std::fs::remove_file(retain));
     }
 
     #[test]

@@ -4,10 +4,12 @@ use crate::clock::{Clock, Tick, monotonic_ns};
 use crate::engine::{Engine, Region};
 use crate::image::Image;
 use crate::path::Resolver;
+use crate::retain::Retain;
 use crate::stats::Stats;
 use crate::stimulus::Stimulus;
 use crate::task::Schedule;
 use crate::trace::Trace;
+use crate::vcd::Vcd;
 use crate::watchdog::Watchdog;
 use crate::{process_image, signals};
 
@@ -22,6 +24,9 @@ pub struct Scan<'a> {
     pub schedule: Schedule,
     pub stimulus: Option<Stimulus>,
     pub trace: Option<Trace>,
+    pub vcd: Option<Vcd>,
+    pub interval_ns: i64,
+    pub retain: Option<Retain>,
     pub stats: Option<Stats>,
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
@@ -54,9 +59,10 @@ impl Scan<'_> {
                     _ => End::Fault(number, task, cycle),
                 };
             }
-            if let Some(trace) = &mut self.trace
-                && let Err(e) = trace.row(cycle, self.resolver, self.mem.as_slice())
-            {
+            if let Some(retain) = &mut self.retain {
+                retain.capture(self.mem.as_slice());
+            }
+            if let Err(e) = self.record(cycle, tick) {
                 return End::Trace(e);
             }
             cycle += 1;
@@ -82,7 +88,20 @@ impl Scan<'_> {
         })
     }
 
+    /// Trace and waveform of a finished cycle.
+    fn record(&mut self, cycle: u64, tick: Tick) -> Result<(), String> {
+        let mem = self.mem.as_slice();
+        if let Some(trace) = &mut self.trace {
+            trace.row(cycle, self.resolver, mem)?;
+            if trace.is_live() && matches!(self.clock, Clock::Real { .. }) {
+                trace.flush()?;
+            }
+        }
+        self.vcd.as_mut().map_or(Ok(()), |vcd| vcd.row(tick.now_ns, self.resolver, mem))
+    }
+
     fn flush(&mut self) -> Result<(), String> {
-        self.trace.as_mut().map_or(Ok(()), Trace::flush)
+        let vcd = self.vcd.as_mut().map_or(Ok(()), |vcd| vcd.finish(self.interval_ns));
+        self.trace.as_mut().map_or(Ok(()), Trace::flush).and(vcd)
     }
 }

@@ -53,11 +53,15 @@ impl Stimulus {
             return Err(format!("{}: the first column must be `cycle`, not `{first}`", place(&header, 0)));
         }
         let mut leaves = Vec::new();
+        let mut named = std::collections::HashSet::new();
         for n in 1..header.len() {
             let path = header.get(n).unwrap_or_default();
             let leaf = resolver.leaf(path).map_err(|e| format!("{}: {e}", place(&header, n)))?;
             if leaf.constant {
                 return Err(format!("{}: `{}` is a CONSTANT", place(&header, n), path.trim()));
+            }
+            if !named.insert((leaf.offset, leaf.bit)) {
+                return Err(format!("{}: `{}` stands in two columns", place(&header, n), path.trim()));
             }
             leaves.push(leaf);
         }
@@ -183,6 +187,7 @@ mod tests {
         assert!(error("cycle,M.a\n1,1\n1,2\n").starts_with("s.csv:3:1: cycle 1 comes after cycle 1"));
         assert!(error("cycle,M.a\n0,1\n").starts_with("s.csv:2:1:"));
         assert!(error("cycle,M.a\n1,1,2\n").starts_with("s.csv:2:5:"));
+        assert!(error("cycle,M.a,m.A\n").starts_with("s.csv:1:11: `m.A` stands in two columns"));
         assert!(error("cycle,M.c\n").contains("CONSTANT"));
         // Quotes, blank lines and line ends inside quotes count as they stand in the file.
         assert!(error("cycle,M.a,M.b\n1,\"5\",x\n").starts_with("s.csv:2:7:"));

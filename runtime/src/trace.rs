@@ -11,6 +11,7 @@ pub struct Trace {
     line: String,
     /// One value before it is quoted; both buffers keep their memory.
     cell: String,
+    live: bool,
 }
 
 impl std::fmt::Debug for Trace {
@@ -35,15 +36,14 @@ pub fn columns(watch: Option<&str>, resolver: &Resolver) -> Result<Vec<(String, 
 impl Trace {
     /// Opens the file (`-` is standard output) and writes the header.
     pub fn open(path: &Path, columns: Vec<(String, Leaf)>) -> Result<Self, String> {
-        let out: Box<dyn Write> = if path == Path::new("-") {
-            Box::new(std::io::stdout())
-        } else {
-            let file =
-                std::fs::File::create(path).map_err(|e| format!("cannot write trace `{}`: {e}", path.display()))?;
-            Box::new(file)
+        let out = create(path, "trace")?;
+        let mut trace = Self {
+            columns,
+            out: BufWriter::with_capacity(1 << 16, out),
+            line: String::new(),
+            cell: String::new(),
+            live: path == Path::new("-"),
         };
-        let mut trace =
-            Self { columns, out: BufWriter::with_capacity(1 << 16, out), line: String::new(), cell: String::new() };
         trace.line.push_str("cycle");
         for (name, _) in &trace.columns {
             trace.line.push(',');
@@ -73,19 +73,35 @@ impl Trace {
         tolerate(done)
     }
 
+    /// Whether rows go to standard output, where somebody may be waiting for them.
+    pub fn is_live(&self) -> bool {
+        self.live
+    }
+
     /// What is buffered, at the end or before a fault is told.
     pub fn flush(&mut self) -> Result<(), String> {
         tolerate(self.out.flush())
     }
 }
 
-/// A reader that goes away ends the trace, not the program; [`Trace::row`] then says so.
-fn tolerate(done: std::io::Result<()>) -> Result<(), String> {
-    match done {
-        Ok(()) => Ok(()),
-        Err(e) if e.kind() == ErrorKind::BrokenPipe => Err(String::new()),
-        Err(e) => Err(format!("cannot write the trace: {e}")),
+/// Opens a file for results, `-` is standard output.
+pub(crate) fn create(path: &Path, what: &str) -> Result<Box<dyn Write>, String> {
+    if path == Path::new("-") {
+        return Ok(Box::new(std::io::stdout()));
     }
+    match std::fs::File::create(path) {
+        Ok(file) => Ok(Box::new(file)),
+        Err(e) => Err(format!("cannot write {what} `{}`: {e}", path.display())),
+    }
+}
+
+/// What to say of a failed write; nothing of a reader that went away, which ends the run quietly.
+pub(crate) fn failure(e: &std::io::Error, what: &str) -> String {
+    if e.kind() == ErrorKind::BrokenPipe { String::new() } else { format!("cannot write the {what}: {e}") }
+}
+
+fn tolerate(done: std::io::Result<()>) -> Result<(), String> {
+    done.map_err(|e| failure(&e, "trace"))
 }
 
 /// A field as in RFC 4180.

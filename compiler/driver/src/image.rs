@@ -45,6 +45,7 @@ pub fn build(
             .collect(),
         areas: [area(Area::Input), area(Area::Output), area(Area::Memory)],
         retain: program.retain.clone(),
+        retain_file: project.retain_file.as_ref().map(|path| path.to_string_lossy().into_owned()),
         files: sources.iter().map(|(_, f)| f.name.clone()).collect(),
         sources: program
             .sources
