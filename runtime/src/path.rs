@@ -21,12 +21,6 @@ pub struct Leaf {
     pub constant: bool,
 }
 
-/// Something with a name: a leaf, an aggregate, or a program with all its variables.
-#[derive(Debug, Clone)]
-struct Found {
-    leaf: Leaf,
-}
-
 /// A number inside brackets, or a name behind a dot.
 #[derive(Debug, PartialEq, Eq)]
 enum Part<'p> {
@@ -78,7 +72,7 @@ impl<'i> Resolver<'i> {
     pub fn columns(&self, path: &str) -> Result<Vec<(String, Leaf)>, String> {
         let mut out = Vec::new();
         match self.find(path) {
-            Ok(found) => self.expand(path.trim(), &found.leaf, &mut out)?,
+            Ok(found) => self.expand(path.trim(), &found, &mut out)?,
             Err(error) => {
                 // A program's name stands for all its variables.
                 let prefix = format!("{}.", self.strip(path.trim()).to_ascii_uppercase());
@@ -116,11 +110,11 @@ impl<'i> Resolver<'i> {
     /// One variable, which must not be an aggregate.
     pub fn leaf(&self, path: &str) -> Result<Leaf, String> {
         let found = self.find(path)?;
-        match self.image.types.get(found.leaf.ty as usize) {
+        match self.image.types.get(found.ty as usize) {
             Some(TypeDesc::Array { .. } | TypeDesc::Struct { .. }) => {
                 Err(format!("`{}` is an aggregate; name its elements", path.trim()))
             }
-            _ => Ok(found.leaf),
+            _ => Ok(found),
         }
     }
 
@@ -144,7 +138,7 @@ impl<'i> Resolver<'i> {
         rest
     }
 
-    fn find(&self, path: &str) -> Result<Found, String> {
+    fn find(&self, path: &str) -> Result<Leaf, String> {
         // A name as it is wins over the same name behind a prefix.
         match self.find_exact(path.trim()) {
             Ok(found) => Ok(found),
@@ -155,7 +149,7 @@ impl<'i> Resolver<'i> {
         }
     }
 
-    fn find_exact(&self, path: &str) -> Result<Found, String> {
+    fn find_exact(&self, path: &str) -> Result<Leaf, String> {
         let parts = parts(path)?;
         let name = |n: usize| match parts.get(n) {
             Some(Part::Name(name)) => Some(name.to_ascii_uppercase()),
@@ -174,7 +168,7 @@ impl<'i> Resolver<'i> {
         for part in &parts[used..] {
             self.step(path, part, &mut leaf)?;
         }
-        Ok(Found { leaf })
+        Ok(leaf)
     }
 
     fn unknown(&self, path: &str) -> String {

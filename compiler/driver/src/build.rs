@@ -7,7 +7,6 @@ use crate::project::Project;
 use crate::{link, nothing_to_run, report};
 use plcc_codegen::object::{self, ObjectOptions};
 use plcc_diag::bug;
-use plcc_hir::Checked;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -55,10 +54,10 @@ pub fn build(args: &BuildArgs, color: Color) -> Result<u8, Failure> {
     }
     let path = output_path(args, &project);
     if args.emit.is_empty() {
-        return link(args, &checked, &compiled, &path, target);
+        return link(args, &compiled, &path, target);
     }
     if args.emit.contains(&Stage::Obj) {
-        write_object(&checked, &compiled, &path, target)?;
+        write_object(&compiled, &path, target)?;
     }
     if args.emit.contains(&Stage::Header) {
         write_header(&compiled, &path)?;
@@ -99,15 +98,9 @@ fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     }
 }
 
-fn link(
-    args: &BuildArgs,
-    checked: &Checked,
-    compiled: &Compiled,
-    path: &Path,
-    target: Option<&str>,
-) -> Result<u8, Failure> {
+fn link(args: &BuildArgs, compiled: &Compiled, path: &Path, target: Option<&str>) -> Result<u8, Failure> {
     if let (Some(target), None) = (target, &args.runtime) {
-        write_object(checked, compiled, path, Some(target))?;
+        write_object(compiled, path, Some(target))?;
         write_header(compiled, path)?;
         eprintln!(
             "note: for {target} plcc writes the object {} and the header {}; link them there, or give --runtime ARCHIVE",
@@ -131,9 +124,8 @@ fn refused(error: plcc_codegen::CodegenError) -> Failure {
     }
 }
 
-fn write_object(checked: &Checked, compiled: &Compiled, path: &Path, target: Option<&str>) -> Result<(), Failure> {
+fn write_object(compiled: &Compiled, path: &Path, target: Option<&str>) -> Result<(), Failure> {
     let vars = crate::image::variables(&compiled.image);
-    let _ = checked;
     let options = ObjectOptions { triple: target, image: None, vars: Some(&vars) };
     let object = object::compile(&compiled.program, options).map_err(refused)?;
     link::write_file(&with_suffix(path, "o"), &object)

@@ -20,7 +20,7 @@ pub(crate) fn collect<'a>(cx: &mut Cx<'a>, units: &[Unit<'a>]) {
             match item {
                 ast::Item::Types(decls) => decls.iter().for_each(|d| declare_type(cx, d)),
                 ast::Item::Pou(pou) => pous.push((declare_pou(cx, pou, unit), pou)),
-                ast::Item::Action(action) => late_actions.push((action, unit)),
+                ast::Item::Action(action) => late_actions.push(action),
                 ast::Item::Globals(_) | ast::Item::Config(_) => {}
             }
         }
@@ -43,17 +43,14 @@ pub(crate) fn collect<'a>(cx: &mut Cx<'a>, units: &[Unit<'a>]) {
             declare_action(cx, id, action);
         }
     }
-    for (action, unit) in late_actions {
+    for action in late_actions {
         let owner = action.owner.as_ref().and_then(|o| cx.pous.get(&fold(&o.text)).copied());
         match owner {
             Some(owner) => declare_action(cx, owner, action),
-            None => {
-                let _ = unit;
-                cx.push(
-                    Diagnostic::new(codes::ACTION_WITHOUT_POU, action.name.span, "this ACTION belongs to no POU")
-                        .help("write it inside its PROGRAM or FUNCTION_BLOCK, after the body"),
-                );
-            }
+            None => cx.push(
+                Diagnostic::new(codes::ACTION_WITHOUT_POU, action.name.span, "this ACTION belongs to no POU")
+                    .help("write it inside its PROGRAM or FUNCTION_BLOCK, after the body"),
+            ),
         }
     }
 }

@@ -213,11 +213,7 @@ impl<'c, 'a> Checker<'c, 'a> {
             Implicit::Same => {}
             Implicit::Exact => self.warn_wraps_first(&expr, from, to, span),
             Implicit::Rounds => {
-                let message = format!("{} cannot hold every {} exactly", to.name(), from.name());
-                self.report(Diagnostic::new(codes::LOSES_PRECISION, span, message).help(format!(
-                    "write {}(...) to say that this is meant, or use LREAL",
-                    rules::conversion_name(from, to)
-                )));
+                self.loses_precision(from, to, span);
             }
             Implicit::CodesysOnly if self.returns_to_bits(from, to, span) => {}
             Implicit::CodesysOnly => {
@@ -247,6 +243,17 @@ impl<'c, 'a> Checker<'c, 'a> {
     }
 
     /// Each operation is done at its own type (\[T1\]): a wider target comes too late.
+    /// An integer beside or into a real that does not hold all its values (\[T2\]).
+    pub fn loses_precision(&mut self, from: Elem, to: Elem, span: Span) {
+        let message = format!("{} cannot hold every {} exactly", to.name(), from.name());
+        self.report(
+            Diagnostic::new(codes::LOSES_PRECISION, span, message).help(format!(
+                "write {}(...) to say that this is meant, or use LREAL",
+                rules::conversion_name(from, to)
+            )),
+        );
+    }
+
     fn warn_wraps_first(&mut self, expr: &Expr, from: Elem, to: Elem, span: Span) {
         if !(from.is_integer() || from.is_bits()) || self.codesys(span) {
             return;

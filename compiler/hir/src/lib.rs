@@ -4,12 +4,14 @@
 //! In: syntax trees of all files. Out: [`Defs`] with checked bodies and the [`Application`]. Memory layout, code and files
 //! are the business of others.
 
+mod access;
 pub mod address;
 pub mod app;
 pub mod body;
 mod body_check;
 mod call;
 mod collect;
+mod comparison;
 mod config;
 mod constant;
 mod consts;
@@ -26,6 +28,7 @@ pub mod print;
 mod resolve;
 pub mod rules;
 mod std_call;
+mod time_arithmetic;
 pub mod types;
 
 pub use app::Application;

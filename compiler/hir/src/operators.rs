@@ -10,7 +10,7 @@ use plcc_stdlib::elem::{Elem, Family};
 use plcc_stdlib::ops::Op;
 use plcc_syntax::ast::{self, BinaryOp, UnaryOp};
 
-const BOOL: fn() -> TypeId = || Types::elem(Elem::Bool);
+pub(crate) const BOOL: fn() -> TypeId = || Types::elem(Elem::Bool);
 
 impl<'a> Checker<'_, 'a> {
     pub fn unary(&mut self, op: UnaryOp, operand: &'a ast::Expr, span: Span, want: Option<TypeId>) -> Operand {
@@ -119,12 +119,12 @@ impl<'a> Checker<'_, 'a> {
         }
     }
 
-    fn wrong_operand(&self, op: &str, ty: TypeId, span: Span, help: &str) -> Diagnostic {
+    pub fn wrong_operand(&self, op: &str, ty: TypeId, span: Span, help: &str) -> Diagnostic {
         let name = self.cx.type_name(ty);
         Diagnostic::new(codes::WRONG_OPERAND, span, format!("{op} does not take {name}")).help(help)
     }
 
-    fn no_operator(&mut self, op: &str, ty: TypeId, span: Span, help: &str) -> Operand {
+    pub fn no_operator(&mut self, op: &str, ty: TypeId, span: Span, help: &str) -> Operand {
         if ty != Types::ERROR {
             let d = self.wrong_operand(op, ty, span, help);
             self.report(d);
@@ -287,22 +287,21 @@ impl<'a> Checker<'_, 'a> {
 
     /// An operand for an operation in `common`: constants must fit, values convert as the profile allows; what profile
     /// codesys computed wider stays wide.
-    fn operand_as(&mut self, operand: Operand, span: Span, common: Elem) -> Expr {
+    pub fn operand_as(&mut self, operand: Operand, span: Span, common: Elem) -> Expr {
         match operand {
-            Operand::Value { expr, ty } => {
+            Operand::Value { expr, .. } => {
                 let actual = self.elem_of(expr.ty).unwrap_or(common);
                 if self.codesys(span) && actual.bits() > common.bits() && actual.is_integer() == common.is_integer() {
                     return expr;
                 }
                 // `common` was chosen so that this conversion is legal.
-                let _ = ty;
                 self.with_elem(expr, common, span)
             }
             constant => self.coerce(constant, span, Types::elem(common)),
         }
     }
 
-    fn no_common(&mut self, op: &str, x: TypeId, y: TypeId, sides: [Span; 2], span: Span) -> Operand {
+    pub fn no_common(&mut self, op: &str, x: TypeId, y: TypeId, sides: [Span; 2], span: Span) -> Operand {
         let (nx, ny) = (self.cx.type_name(x), self.cx.type_name(y));
         let mut d = Diagnostic::new(codes::WRONG_OPERAND, span, format!("{op} cannot combine {nx} and {ny}"))
             .also(sides[0], format!("this is {nx}"))
@@ -361,11 +360,7 @@ impl<'a> Checker<'_, 'a> {
                 && rules::implicit(from, common) == rules::Implicit::Rounds
                 && !matches!(operand, Operand::Value { expr, .. } if matches!(expr.kind, ExprKind::Const(_)))
             {
-                let message = format!("{} cannot hold every {} exactly", common.name(), from.name());
-                self.report(Diagnostic::new(codes::LOSES_PRECISION, side, message).help(format!(
-                    "write {}(...) to say that this is meant, or use LREAL",
-                    rules::conversion_name(from, common)
-                )));
+                self.loses_precision(from, common, side);
             }
         }
         let wide = self.width(common, span);
@@ -392,7 +387,7 @@ impl<'a> Checker<'_, 'a> {
         }
     }
 
-    fn zero_divisor(&mut self, span: Span) -> Operand {
+    pub fn zero_divisor(&mut self, span: Span) -> Operand {
         self.report(
             Diagnostic::new(codes::ZERO_DIVISOR, span, "division by the constant 0")
                 .help("the divisor must not be 0; for REAL write 0.0 to get an infinity"),
@@ -439,7 +434,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// The type of an operation between a value and an untyped constant.
-    fn beside_constant(&self, elem: Elem, constant: &Operand, want: Option<TypeId>, codesys: bool) -> Elem {
+    pub fn beside_constant(&self, elem: Elem, constant: &Operand, want: Option<TypeId>, codesys: bool) -> Elem {
         match constant {
             // A real literal makes the operation real: as the place asks, else LREAL.
             Operand::Real(_) if !elem.is_real() => match want.and_then(|w| self.elem_of(w)) {
@@ -487,233 +482,6 @@ impl<'a> Checker<'_, 'a> {
         })
     }
 
-    /// Durations and dates (semantics.md \[T7\]): sums and differences of nanoseconds, products with numbers.
-    #[allow(clippy::too_many_arguments)]
-    fn time_arithmetic(
-        &mut self,
-        op: BinaryOp,
-        a: Operand,
-        b: Operand,
-        ea: Option<Elem>,
-        eb: Option<Elem>,
-        sides: [Span; 2],
-        span: Span,
-    ) -> Operand {
-        use Family::*;
-        let family = |e: Option<Elem>| e.map(Elem::family);
-        let long = |e: Option<Elem>| matches!(e, Some(Elem::Ltime | Elem::Ldate | Elem::Ltod | Elem::Ldt));
-        let time = |long: bool| if long { Elem::Ltime } else { Elem::Time };
-        let number = |e: Option<Elem>| e.is_none_or(|e| e.is_integer() || e.is_real());
-        let result = match (op, family(ea), family(eb)) {
-            (BinaryOp::Add | BinaryOp::Sub, Some(Duration), Some(Duration)) => Some(time(long(ea) || long(eb))),
-            (BinaryOp::Add | BinaryOp::Sub, Some(TimeOfDay | DateTime), Some(Duration)) => ea,
-            (BinaryOp::Sub, Some(x @ (Date | TimeOfDay | DateTime)), Some(y)) if x == y => {
-                Some(time(long(ea) || long(eb)))
-            }
-            (BinaryOp::Mul, Some(Duration), _) if number(eb) => {
-                return self.scale(Op::TimeMul, a, b, ea, eb, sides, span);
-            }
-            (BinaryOp::Mul, _, Some(Duration)) if number(ea) => {
-                return self.scale(Op::TimeMul, b, a, eb, ea, [sides[1], sides[0]], span);
-            }
-            (BinaryOp::Div, Some(Duration), _) if number(eb) => {
-                return self.scale(Op::TimeDiv, a, b, ea, eb, sides, span);
-            }
-            _ => None,
-        };
-        let Some(result) = result else {
-            let name = |c: &Checker, o: &Operand| match o {
-                Operand::Value { ty, .. } => c.cx.type_name(*ty),
-                _ => "a number".into(),
-            };
-            let message = format!("{} cannot combine {} and {}", op.text(), name(self, &a), name(self, &b));
-            self.report(Diagnostic::new(codes::WRONG_OPERAND, span, message).help(
-                "durations add to durations, times of day and dates with time; dates of one kind subtract; \
-                 a duration may be multiplied and divided by a number",
-            ));
-            return Operand::Error;
-        };
-        let prim = if op == BinaryOp::Add { Op::Add } else { Op::Sub };
-        let a = self.settle(a, sides[0]);
-        let b = self.settle(b, sides[1]);
-        // All of them are nanoseconds in 64 bits: the operation is that of TIME.
-        let args = vec![retype(a, Types::elem(Elem::Time)), retype(b, Types::elem(Elem::Time))];
-        let sum = Expr { kind: ExprKind::Op(prim, Elem::Time, args), ty: Types::elem(Elem::Time), span };
-        let ty = Types::elem(result);
-        Operand::Value { expr: retype(sum, ty), ty }
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    fn scale(
-        &mut self,
-        op: Op,
-        time: Operand,
-        factor: Operand,
-        time_elem: Option<Elem>,
-        factor_elem: Option<Elem>,
-        sides: [Span; 2],
-        span: Span,
-    ) -> Operand {
-        let ty = Types::elem(time_elem.unwrap_or(Elem::Time));
-        let time = self.settle(time, sides[0]);
-        let factor = self.settle(factor, sides[1]);
-        // Whole numbers are widened to 64 bits, reals to LREAL: one formula for each.
-        let by = match factor_elem.or(self.elem_of(factor.ty)) {
-            Some(e) if e.is_real() => Elem::Lreal,
-            Some(Elem::Ulint) => Elem::Ulint,
-            _ => Elem::Lint,
-        };
-        if op == Op::TimeDiv && by != Elem::Lreal && matches!(factor.kind, ExprKind::Const(0)) {
-            return self.zero_divisor(sides[1]);
-        }
-        let factor = self.with_elem(factor, by, sides[1]);
-        Operand::value(ExprKind::Op(op, by, vec![time, factor]), ty, span)
-    }
-
-    fn comparison(&mut self, op: BinaryOp, at: Span, a: Operand, b: Operand, sides: [Span; 2], span: Span) -> Operand {
-        let prim = match op {
-            BinaryOp::Lt => Op::Lt,
-            BinaryOp::Gt => Op::Gt,
-            BinaryOp::Le => Op::Le,
-            BinaryOp::Ge => Op::Ge,
-            BinaryOp::Eq => Op::Eq,
-            _ => Op::Ne,
-        };
-        let equality = matches!(prim, Op::Eq | Op::Ne);
-        if let (Some(x), Some(y)) = (exact(&a), exact(&b)) {
-            let order = match (x, y) {
-                (Exact::Int(x), Exact::Int(y)) => Some(x.cmp(&y)),
-                (x, y) => x.real().partial_cmp(&y.real()),
-            };
-            let holds = order.is_some_and(|o| match op {
-                BinaryOp::Lt => o.is_lt(),
-                BinaryOp::Gt => o.is_gt(),
-                BinaryOp::Le => o.is_le(),
-                BinaryOp::Ge => o.is_ge(),
-                BinaryOp::Eq => o.is_eq(),
-                _ => o.is_ne(),
-            });
-            return Operand::value(ExprKind::Const(u64::from(holds)), BOOL(), span);
-        }
-        let (x, y) = (self.static_type(&a), self.static_type(&b));
-        if x == Some(Types::ERROR) || y == Some(Types::ERROR) {
-            return Operand::Error;
-        }
-        if let (Some(x), Some(y)) = (x, y)
-            && let Some(result) = self.special_comparison(prim, equality, &a, &b, x, y, sides, span)
-        {
-            return result;
-        }
-        let codesys = self.codesys(span);
-        let mut elems = [None, None];
-        for (i, ty) in [x, y].into_iter().enumerate() {
-            let Some(ty) = ty else { continue };
-            let enumeration = matches!(self.cx.defs.types.get(ty), Type::Enum(_));
-            match self.elem_of(ty) {
-                Some(_) if enumeration => {
-                    // The other side is no value of this enumeration: a constant or another type.
-                    let (x, y) = (x.unwrap_or(Types::elem(Elem::Int)), y.unwrap_or(Types::elem(Elem::Int)));
-                    return self.no_common(op.text(), x, y, sides, span);
-                }
-                Some(Elem::Bool) if !equality => {
-                    return self.no_operator(op.text(), ty, sides[i], "BOOL has no order; use = or <>");
-                }
-                Some(elem) if elem.is_bits() && !equality => {
-                    let number = rules::as_number(elem);
-                    let strict = self
-                        .wrong_operand(op.text(), ty, sides[i], "a bit string has no order")
-                        .help(format!("convert it with {}", rules::conversion_name(elem, number)));
-                    if !self.codesys_only(span, codes::LAX_CONVERSION, strict) {
-                        return Operand::Error;
-                    }
-                    elems[i] = Some(number);
-                }
-                Some(elem) => elems[i] = Some(elem),
-                None => return self.no_operator(op.text(), ty, sides[i], "only elementary values can be compared"),
-            }
-        }
-        let common = match (elems[0], elems[1]) {
-            (Some(x), Some(y)) => rules::common(x, y, codesys),
-            (Some(x), None) => Some(self.beside_constant(x, &b, None, codesys)),
-            (None, Some(y)) => Some(self.beside_constant(y, &a, None, codesys)),
-            (None, None) => None,
-        };
-        let Some(common) = common else {
-            return self.no_common(op.text(), x.unwrap_or(Types::ERROR), y.unwrap_or(Types::ERROR), sides, span);
-        };
-        let (untyped_a, untyped_b) = (x.is_none(), y.is_none());
-        let mut a = self.operand_as(a, sides[0], common);
-        let mut b = self.operand_as(b, sides[1], common);
-        if a.ty == Types::ERROR || b.ty == Types::ERROR {
-            return Operand::Error;
-        }
-        // Profile codesys may have computed one side wider: compare there.
-        let wide = match (self.elem_of(a.ty), self.elem_of(b.ty)) {
-            (Some(x), Some(y)) if x != y => {
-                if x.bits() >= y.bits() {
-                    x
-                } else {
-                    y
-                }
-            }
-            (Some(x), _) => x,
-            _ => common,
-        };
-        a = self.with_elem(a, wide, sides[0]);
-        b = self.with_elem(b, wide, sides[1]);
-        if equality && wide.is_real() {
-            let zero = |e: &Expr, untyped: bool| untyped && matches!(e.kind, ExprKind::Const(0));
-            if !zero(&a, untyped_a) && !zero(&b, untyped_b) {
-                self.report(
-                    Diagnostic::new(codes::REAL_EQUALITY, at, format!("{} compares reals for equality", op.text()))
-                        .help("rounding makes this unreliable; compare the distance: ABS(a - b) < limit"),
-                );
-            }
-        }
-        Operand::value(ExprKind::Op(prim, wide, vec![a, b]), BOOL(), span)
-    }
-
-    /// Comparisons of what is not a plain elementary type: enumerations, references, strings.
-    #[allow(clippy::too_many_arguments)]
-    fn special_comparison(
-        &mut self,
-        op: Op,
-        equality: bool,
-        a: &Operand,
-        b: &Operand,
-        x: TypeId,
-        y: TypeId,
-        sides: [Span; 2],
-        span: Span,
-    ) -> Option<Operand> {
-        let pair = |a: &Operand, b: &Operand| match (a, b) {
-            (Operand::Value { expr: a, .. }, Operand::Value { expr: b, .. }) => Some((a.clone(), b.clone())),
-            _ => None,
-        };
-        let types = &self.cx.defs.types;
-        let elem = match (types.get(x), types.get(y)) {
-            (Type::Enum(i), Type::Enum(j)) if i == j => self.cx.defs.enums[*i].base,
-            (Type::Ref { .. } | Type::Null, Type::Ref { .. } | Type::Null) if equality => {
-                let same = match (types.get(x), types.get(y)) {
-                    (Type::Ref { target: a, .. }, Type::Ref { target: b, .. }) => a == b,
-                    _ => true,
-                };
-                if !same {
-                    return Some(self.no_common("=", x, y, sides, span));
-                }
-                Elem::Udint
-            }
-            (Type::String { .. } | Type::AnyString { .. }, Type::String { .. } | Type::AnyString { .. }) => {
-                return Some(self.not_yet(span, "comparing strings"));
-            }
-            _ => return None,
-        };
-        let (a, b) = pair(a, b)?;
-        let ty = Types::elem(elem);
-        let args = vec![retype(a, ty), retype(b, ty)];
-        Some(Operand::value(ExprKind::Op(op, elem, args), BOOL(), span))
-    }
-
     /// A feature whose place is laid but that is not built.
     pub fn not_yet(&mut self, span: Span, what: &str) -> Operand {
         self.report(Diagnostic::new(codes::NOT_YET, span, format!("{what} is not implemented yet")));
@@ -755,13 +523,13 @@ impl<'a> Checker<'_, 'a> {
 
 /// An untyped constant.
 #[derive(Clone, Copy)]
-enum Exact {
+pub(crate) enum Exact {
     Int(i128),
     Real(f64),
 }
 
 impl Exact {
-    fn real(self) -> f64 {
+    pub fn real(self) -> f64 {
         match self {
             Exact::Int(v) => v as f64,
             Exact::Real(v) => v,
@@ -769,7 +537,7 @@ impl Exact {
     }
 }
 
-fn exact(operand: &Operand) -> Option<Exact> {
+pub(crate) fn exact(operand: &Operand) -> Option<Exact> {
     match operand {
         Operand::Int(v) => Some(Exact::Int(*v)),
         Operand::Real(v) => Some(Exact::Real(*v)),

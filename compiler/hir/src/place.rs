@@ -526,102 +526,12 @@ impl<'a> Checker<'_, 'a> {
         text
     }
 
-    /// Reports it if a place may not be written (\[S5\]). `passed` says it goes to a VAR_IN_OUT or an output.
-    pub fn check_writable(&mut self, place: &Place) -> bool {
-        let var = match &place.root {
-            Root::Var(var) => *var,
-            Root::Address(address) => {
-                if address.area == Area::Input {
-                    self.report(
-                        Diagnostic::new(codes::NOT_WRITABLE, place.span, "an input address cannot be written")
-                            .help("the process image sets %I before each scan; write to %Q or %M"),
-                    );
-                    return false;
-                }
-                return true;
-            }
-            _ => return true,
-        };
-        // The first member from the outside decides for instances: inputs may be written, outputs not.
-        for step in &place.steps {
-            match step {
-                Step::Member(member) if self.cx.defs.vars[*member].section == Section::Output => {
-                    let name = self.cx.defs.vars[*member].name.clone();
-                    self.report(
-                        Diagnostic::new(
-                            codes::NOT_WRITABLE,
-                            place.span,
-                            format!("`{name}` is an output of the instance and cannot be assigned from outside"),
-                        )
-                        .help("only the function block itself writes its outputs"),
-                    );
-                    return false;
-                }
-                Step::Deref => return true,
-                _ => {}
-            }
-        }
-        let v = self.cx.defs.vars[var].clone();
-        let (name, span) = (v.name, v.span);
-        if v.constant {
-            self.report(
-                Diagnostic::new(codes::NOT_WRITABLE, place.span, format!("`{name}` is a CONSTANT"))
-                    .also(span, "declared here")
-                    .help("a constant keeps its initial value; remove CONSTANT if it is meant to change"),
-            );
-            return false;
-        }
-        if v.section == Section::Input && v.owner == self.scope && !self.member_write(place) {
-            self.report(
-                Diagnostic::new(codes::INPUT_WRITTEN, place.span, format!("the input `{name}` is assigned here"))
-                    .also(span, "declared as VAR_INPUT here")
-                    .help("use a variable of its own for the changed value"),
-            );
-        }
-        if v.address.is_some_and(|a| a.area == Area::Input) {
-            self.report(
-                Diagnostic::new(
-                    codes::INPUT_WRITTEN,
-                    place.span,
-                    format!("`{name}` lies in %I, the next scan overwrites it"),
-                )
-                .also(span, "located here")
-                .help("the process image sets %I before each scan"),
-            );
-        }
-        true
-    }
-
-    /// Whether a path leads into an instance (whose inputs anyone may write).
-    fn member_write(&self, place: &Place) -> bool {
-        place.steps.iter().any(|s| matches!(s, Step::Member(_)))
-    }
-
     /// The variable of a plain name, for FOR.
     pub fn plain_var(&self, place: &Place) -> Option<VarId> {
         match (&place.root, place.steps.is_empty()) {
             (Root::Var(var), true) => Some(*var),
             _ => None,
         }
-    }
-
-    /// Whether references may point to it: not to a bit (\[R1\]).
-    pub fn addressable(&mut self, place: &Place, what: &str) -> bool {
-        let bit = matches!(place.steps.last(), Some(Step::Bit(_) | Step::Part(..)))
-            || match &place.root {
-                Root::Var(var) => {
-                    place.steps.is_empty() && self.cx.defs.vars[*var].address.is_some_and(|a| a.bit.is_some())
-                }
-                Root::Address(a) => a.bit.is_some(),
-                _ => false,
-            };
-        if bit {
-            self.report(
-                Diagnostic::new(codes::NO_REFERENCE, place.span, format!("{what} cannot refer to a single bit"))
-                    .help("copy it to a BOOL variable and pass that"),
-            );
-        }
-        !bit
     }
 
     /// The declared type of a variable, its slot resolved.

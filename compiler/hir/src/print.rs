@@ -11,8 +11,7 @@ use std::fmt::Write;
 /// All POUs of the user with their variables and bodies.
 pub fn print(defs: &Defs) -> String {
     let mut p = Printer { defs, out: String::new(), indent: 0 };
-    for (id, def) in defs.structs.iter_enumerated() {
-        let _ = id;
+    for def in &defs.structs {
         p.line(&format!("{} {}", if def.union { "UNION" } else { "STRUCT" }, def.name));
         def.fields.iter().for_each(|f| p.line(&format!("  {} : {}{}", f.name, type_name(defs, f.ty), init(&f.init))));
     }

@@ -192,7 +192,7 @@ impl<'a> Checker<'_, 'a> {
             Meaning::Operator(op) => self.fold_operator(op, operands, span, want),
             Meaning::Compare(op, _) if operands.len() == 2 => self.fold_operator(op, operands, span, want),
             Meaning::Move => operands.remove(0).0,
-            Meaning::Convert(from, to) => self.conversion(func, from, to, operands.remove(0), span),
+            Meaning::Convert(to) => self.conversion(func, to, operands.remove(0), span),
             Meaning::Shift(op) => self.shift(func, op, operands, span, want),
             Meaning::Integral(_) => self.integral(func, operands.remove(0), span, want),
             Meaning::Formula(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
@@ -217,15 +217,7 @@ impl<'a> Checker<'_, 'a> {
         sum
     }
 
-    fn conversion(
-        &mut self,
-        func: &'static StdFn,
-        from: Option<Elem>,
-        to: Elem,
-        (operand, at): (Operand, Span),
-        span: Span,
-    ) -> Operand {
-        let _ = from;
+    fn conversion(&mut self, func: &'static StdFn, to: Elem, (operand, at): (Operand, Span), span: Span) -> Operand {
         let target = Types::elem(to);
         let expr = match operand {
             // `TO_REAL(1)`: an untyped constant has a type of its own here.
@@ -548,16 +540,16 @@ impl<'a> Checker<'_, 'a> {
         if codesys && func.generic == Generic::Num && elem.is_bits() {
             return Some(Types::elem(rules::as_number(elem)));
         }
+        self.does_not_take(func, ty, vars.first().map_or(span, |v| v.1));
+        None
+    }
+
+    fn does_not_take(&mut self, func: &StdFn, ty: TypeId, at: Span) {
         let name = self.cx.type_name(ty);
         self.report(
-            Diagnostic::new(
-                codes::WRONG_OPERAND,
-                vars.first().map_or(span, |v| v.1),
-                format!("{} does not take {name}", func.name),
-            )
-            .help(format!("it is {}", func.signature())),
+            Diagnostic::new(codes::WRONG_OPERAND, at, format!("{} does not take {name}", func.name))
+                .help(format!("it is {}", func.signature())),
         );
-        None
     }
 
     fn belongs(&self, generic: Generic, elem: Elem) -> bool {
@@ -576,15 +568,7 @@ impl<'a> Checker<'_, 'a> {
             self.not_yet(span, &what);
             return None;
         }
-        let name = self.cx.type_name(ty);
-        self.report(
-            Diagnostic::new(
-                codes::WRONG_OPERAND,
-                vars.first().map_or(span, |v| v.1),
-                format!("{} does not take {name}", func.name),
-            )
-            .help(format!("it is {}", func.signature())),
-        );
+        self.does_not_take(func, ty, vars.first().map_or(span, |v| v.1));
         None
     }
 }

@@ -21,14 +21,8 @@ pub(super) fn rows() -> Vec<StdFn> {
         for to_name in spellings(to) {
             let any = [("IN", Type::Var)];
             let doc = "IN as this type; see semantics T6.";
-            let general = row(
-                &format!("TO_{to_name}"),
-                "Ed. 3 table 22",
-                Generic::Elementary,
-                &any,
-                Meaning::Convert(None, to),
-                doc,
-            );
+            let general =
+                row(&format!("TO_{to_name}"), "Ed. 3 table 22", Generic::Elementary, &any, Meaning::Convert(to), doc);
             rows.push(general.gives(Type::Fixed(to)));
             for from in ALL {
                 if !crate::convert::exists(from, to) {
@@ -36,7 +30,7 @@ pub(super) fn rows() -> Vec<StdFn> {
                 }
                 for from_name in spellings(from) {
                     let param = [("IN", Type::Fixed(from))];
-                    let meaning = Meaning::Convert(Some(from), to);
+                    let meaning = Meaning::Convert(to);
                     let name = format!("{from_name}_TO_{to_name}");
                     rows.push(row(&name, clause, Generic::Elementary, &param, meaning, doc).gives(Type::Fixed(to)));
                 }

@@ -79,8 +79,8 @@ pub enum Meaning {
     Compare(Operator, Formula),
     /// A shift or rotation (`ops::Op`), value and count.
     Shift(crate::ops::Op),
-    /// A conversion; `None` from: of any elementary type (`TO_INT`).
-    Convert(Option<Elem>, Elem),
+    /// A conversion of the one argument, whose type the parameter names, to this type.
+    Convert(Elem),
     /// A real to an integer after rounding with this operation.
     Integral(PrimOp),
     /// The argument itself.
@@ -273,7 +273,7 @@ mod tests {
         assert_eq!(find("ADD_INT").unwrap().bound, Some(Elem::Int));
         assert!(find("ADD_BOOL").is_none());
         assert_eq!(find("MUX").unwrap().param_index("IN0"), Some(1));
-        assert!(matches!(find("INT_TO_REAL").unwrap().meaning, Meaning::Convert(Some(Elem::Int), Elem::Real)));
+        assert!(matches!(find("INT_TO_REAL").unwrap().meaning, Meaning::Convert(Elem::Real)));
         assert!(find("TIME_OF_DAY_TO_LREAL").is_some());
     }
 }
