@@ -204,12 +204,25 @@ pub enum Step {
     Member(VarId),
     /// Elements, one index (LINT) per dimension; the text is the array's name for fault messages.
     Index(Vec<Expr>, String),
+    /// Elements of an ARRAY [*]: an index and the actual bounds per dimension; the text is the array's name.
+    OpenIndex(Vec<OpenIndex>, String),
     /// Follows a reference that lies here.
     Deref,
     /// Bit n of an integer or bit string.
     Bit(u8),
     /// Byte, word or double word n of a wider bit string: the elementary type and its number.
     Part(Elem, u8),
+}
+
+/// A subscript of an array whose bounds its caller knows; all LINT.
+#[derive(Debug, Clone)]
+pub struct OpenIndex {
+    /// The index.
+    pub value: Expr,
+    /// The actual lower bound.
+    pub low: Expr,
+    /// The actual upper bound.
+    pub high: Expr,
 }
 
 /// A call of a user's POU.

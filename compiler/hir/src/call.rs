@@ -27,8 +27,10 @@ pub(crate) enum Target {
 pub(crate) enum Special {
     /// `REF(x)`, `ADR(x)`.
     Reference { pointer: bool },
-    /// Known, not built.
-    NotYet(&'static str),
+    /// `SIZEOF(x)`, of a variable or a type.
+    SizeOf,
+    /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`.
+    Bound { upper: bool },
 }
 
 impl<'a> Checker<'_, 'a> {
@@ -160,8 +162,9 @@ impl<'a> Checker<'_, 'a> {
         match key.as_str() {
             "REF" => return Target::Special(Special::Reference { pointer: false }),
             "ADR" => return Target::Special(Special::Reference { pointer: true }),
-            "SIZEOF" => return Target::Special(Special::NotYet("SIZEOF")),
-            "LOWER_BOUND" | "UPPER_BOUND" => return Target::Special(Special::NotYet("LOWER_BOUND and UPPER_BOUND")),
+            "SIZEOF" => return Target::Special(Special::SizeOf),
+            "LOWER_BOUND" => return Target::Special(Special::Bound { upper: false }),
+            "UPPER_BOUND" => return Target::Special(Special::Bound { upper: true }),
             _ => {}
         }
         if let Some(func) = plcc_stdlib::funcs::find(&key) {
@@ -230,7 +233,7 @@ impl<'a> Checker<'_, 'a> {
     /// Parameters of a POU as a call sees them.
     fn parameters(&self, pou: PouId, section: &[Section]) -> Vec<VarId> {
         let vars = self.cx.defs.pous[pou].vars.iter().copied();
-        vars.filter(|v| section.contains(&self.cx.defs.vars[*v].section)).collect()
+        vars.filter(|v| section.contains(&self.cx.defs.vars[*v].section) && !self.cx.defs.vars[*v].is_hidden()).collect()
     }
 
     fn user_call(&mut self, callee: Callee, pou: PouId, call: &'a ast::Call, span: Span) -> Option<Call> {
@@ -436,8 +439,9 @@ impl<'a> Checker<'_, 'a> {
             if !self.addressable(&place, "a VAR_IN_OUT") {
                 return false;
             }
+            let passed = self.pass_bounds(param, &place, out);
             out.in_outs.push((param, place));
-            return true;
+            return passed;
         }
         let value = self.value(e, ty);
         if value.ty == Types::ERROR {
@@ -573,32 +577,10 @@ impl<'a> Checker<'_, 'a> {
     }
 
     fn special_call(&mut self, special: Special, call: &'a ast::Call, span: Span) -> Operand {
-        let pointer = match special {
-            Special::NotYet(what) => return self.not_yet(span, what),
-            Special::Reference { pointer } => pointer,
-        };
-        let [ast::Arg { kind: ast::ArgKind::Positional(e), .. }] = call.args.as_slice() else {
-            self.report(
-                Diagnostic::new(codes::TOO_MANY_ARGUMENTS, span, "a reference is taken of one variable")
-                    .help("write REF(variable)"),
-            );
-            return Operand::Error;
-        };
-        let Some(place) = self.place(e) else { return Operand::Error };
-        if !self.addressable(&place, "a reference") {
-            return Operand::Error;
+        match special {
+            Special::Reference { pointer } => self.reference_to(pointer, call, span),
+            Special::SizeOf => self.size_of(call, span),
+            Special::Bound { upper } => self.bound(upper, call, span),
         }
-        let Root::Var(var) = place.root else {
-            return self.not_yet(span, "a reference to this place");
-        };
-        let section = self.cx.defs.vars[var].section;
-        let owner = self.cx.defs.vars[var].owner;
-        let frame = section == Section::Temp || owner.is_some_and(|o| self.cx.defs.pous[o].kind == PouKind::Function);
-        if frame || section == Section::InOut {
-            return self.not_yet(span, "a reference to a variable of a call");
-        }
-        self.cx.defs.vars[var].address_taken = true;
-        let ty = self.cx.defs.types.intern(Type::Ref { pointer, target: place.ty });
-        Operand::value(ExprKind::RefOf(place), ty, span)
     }
 }

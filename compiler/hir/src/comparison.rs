@@ -48,8 +48,11 @@ impl Checker<'_, '_> {
         if x == Some(Types::ERROR) || y == Some(Types::ERROR) {
             return Operand::Error;
         }
+        if let Some(result) = self.reference_comparison(prim, &a, &b, sides, span) {
+            return result;
+        }
         if let (Some(x), Some(y)) = (x, y)
-            && let Some(result) = self.special_comparison(prim, equality, &a, &b, x, y, sides, span)
+            && let Some(result) = self.special_comparison(prim, &a, &b, x, y, span)
         {
             return result;
         }
@@ -122,17 +125,14 @@ impl Checker<'_, '_> {
         Operand::value(ExprKind::Op(prim, wide, vec![a, b]), BOOL(), span)
     }
 
-    /// Comparisons of what is not a plain elementary type: enumerations, references, strings.
-    #[allow(clippy::too_many_arguments)]
+    /// Comparisons of what is not a plain elementary type: enumerations, strings.
     fn special_comparison(
         &mut self,
         op: Op,
-        equality: bool,
         a: &Operand,
         b: &Operand,
         x: TypeId,
         y: TypeId,
-        sides: [Span; 2],
         span: Span,
     ) -> Option<Operand> {
         let pair = |a: &Operand, b: &Operand| match (a, b) {
@@ -142,16 +142,6 @@ impl Checker<'_, '_> {
         let types = &self.cx.defs.types;
         let elem = match (types.get(x), types.get(y)) {
             (Type::Enum(i), Type::Enum(j)) if i == j => self.cx.defs.enums[*i].base,
-            (Type::Ref { .. } | Type::Null, Type::Ref { .. } | Type::Null) if equality => {
-                let same = match (types.get(x), types.get(y)) {
-                    (Type::Ref { target: a, .. }, Type::Ref { target: b, .. }) => a == b,
-                    _ => true,
-                };
-                if !same {
-                    return Some(self.no_common("=", x, y, sides, span));
-                }
-                Elem::Udint
-            }
             (Type::String { .. } | Type::AnyString { .. }, Type::String { .. } | Type::AnyString { .. }) => {
                 return Some(self.not_yet(span, "comparing strings"));
             }

@@ -93,6 +93,8 @@ pub(crate) struct Cx<'a> {
     pub pou_slots: IndexVec<PouId, PouSlot<'a>>,
     /// Types written once and used by several names (`a, b : (Red, Green)`).
     pub type_cache: FxHashMap<*const ast::TypeExpr, Resolved>,
+    /// The hidden bounds of parameters that are ARRAY [*].
+    pub open_bounds: FxHashMap<VarId, Vec<[VarId; 2]>>,
     /// Errors that the codesys profile would not have: for the closing note of \[P1\].
     pub codesys_only: usize,
     /// Names that were reported as unknown, by POU: one message each.
@@ -113,6 +115,7 @@ impl<'a> Cx<'a> {
             var_slots: IndexVec::new(),
             pou_slots: IndexVec::new(),
             type_cache: FxHashMap::default(),
+            open_bounds: FxHashMap::default(),
             codesys_only: 0,
             reported: FxHashSet::default(),
         }

@@ -4,6 +4,7 @@ use crate::body::*;
 use crate::cx::Cx;
 use crate::defs::*;
 use crate::types::{Type, TypeId, Types};
+use crate::visit::{self, Visitor};
 use plcc_diag::{Diagnostic, Span, codes};
 use rustc_hash::FxHashMap;
 
@@ -120,82 +121,12 @@ pub(crate) fn recursion(cx: &mut Cx) {
 
 /// Every call in a list of statements.
 pub fn calls_of(stmts: &[Stmt], out: &mut Vec<(PouId, Span)>) {
-    for stmt in stmts {
-        match &stmt.kind {
-            StmtKind::Assign { target, value } => {
-                in_place(target, out);
-                in_expr(value, out);
-            }
-            StmtKind::Call(call) => in_call(call, out),
-            StmtKind::Eval(e) => in_expr(e, out),
-            StmtKind::If { arms, otherwise } => {
-                for (cond, body) in arms {
-                    in_expr(cond, out);
-                    calls_of(body, out);
-                }
-                calls_of(otherwise, out);
-            }
-            StmtKind::Case { selector, arms, otherwise } => {
-                in_expr(selector, out);
-                arms.iter().for_each(|a| calls_of(&a.body, out));
-                calls_of(otherwise, out);
-            }
-            StmtKind::For { var, from, to, by, body } => {
-                in_place(var, out);
-                [from, to].into_iter().chain(by).for_each(|e| in_expr(e, out));
-                calls_of(body, out);
-            }
-            StmtKind::While(cond, body) | StmtKind::Repeat(body, cond) => {
-                in_expr(cond, out);
-                calls_of(body, out);
-            }
-            StmtKind::Jump(_, Some(cond)) => in_expr(cond, out),
-            StmtKind::Exit | StmtKind::Continue | StmtKind::Return | StmtKind::Label(_) | StmtKind::Jump(_, None) => {}
+    struct Calls<'v>(&'v mut Vec<(PouId, Span)>);
+    impl Visitor for Calls<'_> {
+        fn call(&mut self, call: &Call) {
+            let (Callee::Function(pou) | Callee::Instance(_, pou) | Callee::Action(_, pou)) = call.callee;
+            self.0.push((pou, call.span));
         }
     }
-}
-
-fn in_call(call: &Call, out: &mut Vec<(PouId, Span)>) {
-    match &call.callee {
-        Callee::Function(pou) => out.push((*pou, call.span)),
-        Callee::Instance(place, pou) => {
-            in_place(place, out);
-            out.push((*pou, call.span));
-        }
-        Callee::Action(place, pou) => {
-            place.iter().for_each(|p| in_place(p, out));
-            out.push((*pou, call.span));
-        }
-    }
-    call.inputs.iter().for_each(|(_, e)| in_expr(e, out));
-    call.in_outs.iter().for_each(|(_, p)| in_place(p, out));
-    call.outputs.iter().for_each(|o| in_place(&o.target, out));
-    call.en.iter().for_each(|e| in_expr(e, out));
-    call.eno.iter().for_each(|p| in_place(p, out));
-}
-
-fn in_place(place: &Place, out: &mut Vec<(PouId, Span)>) {
-    if let Root::Deref(e) = &place.root {
-        in_expr(e, out);
-    }
-    for step in &place.steps {
-        if let Step::Index(indices, _) = step {
-            indices.iter().for_each(|e| in_expr(e, out));
-        }
-    }
-}
-
-fn in_expr(e: &Expr, out: &mut Vec<(PouId, Span)>) {
-    match &e.kind {
-        ExprKind::Read(place) | ExprKind::RefOf(place) => in_place(place, out),
-        ExprKind::Op(_, _, args) | ExprKind::Std { args, .. } => args.iter().for_each(|a| in_expr(a, out)),
-        ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => {
-            in_expr(a, out);
-            in_expr(b, out);
-        }
-        ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) => in_expr(inner, out),
-        ExprKind::RangeCheck { value, .. } => in_expr(value, out),
-        ExprKind::Call(call) => in_call(call, out),
-        ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {}
-    }
+    visit::stmts(stmts, &mut Calls(out));
 }

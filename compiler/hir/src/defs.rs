@@ -127,6 +127,13 @@ pub struct Var {
     pub span: Span,
 }
 
+impl Var {
+    /// Whether a notation added it; users cannot name it.
+    pub fn is_hidden(&self) -> bool {
+        self.name.starts_with('$')
+    }
+}
+
 /// The three areas of located variables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Area {

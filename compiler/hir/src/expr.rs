@@ -149,6 +149,9 @@ impl<'c, 'a> Checker<'c, 'a> {
         if ty == target {
             return self.narrow(expr, ty);
         }
+        if let Some(expr) = self.coerce_reference(&expr, ty, target, span) {
+            return expr;
+        }
         let types = &self.cx.defs.types;
         match (types.get(ty).clone(), types.get(target).clone()) {
             (Type::Void, _) => {
@@ -158,9 +161,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                 );
                 error_expr(span)
             }
-            (Type::Null, Type::Ref { .. }) => retype(expr, target),
             (Type::Enum(_), _) | (_, Type::Enum(_)) => self.mismatch(expr, ty, target),
-            (Type::Ref { target: a, .. }, Type::Ref { target: b, .. }) if a == b => retype(expr, target),
             (Type::String { wide: a, .. }, Type::String { wide: b, .. }) if a == b => {
                 self.check_string_fits(&expr, target);
                 expr
@@ -242,7 +243,6 @@ impl<'c, 'a> Checker<'c, 'a> {
         retype(expr, target_unless_subrange(&self.cx.defs, target, base))
     }
 
-    /// Each operation is done at its own type (\[T1\]): a wider target comes too late.
     /// An integer beside or into a real that does not hold all its values (\[T2\]).
     pub fn loses_precision(&mut self, from: Elem, to: Elem, span: Span) {
         let message = format!("{} cannot hold every {} exactly", to.name(), from.name());
@@ -254,6 +254,7 @@ impl<'c, 'a> Checker<'c, 'a> {
         );
     }
 
+    /// Each operation is done at its own type (\[T1\]): a wider target comes too late.
     fn warn_wraps_first(&mut self, expr: &Expr, from: Elem, to: Elem, span: Span) {
         if !(from.is_integer() || from.is_bits()) || self.codesys(span) {
             return;
@@ -369,8 +370,10 @@ impl<'c, 'a> Checker<'c, 'a> {
             return self.mismatch(number, Types::elem(Elem::Int), target);
         }
         let Some(elem) = self.elem_of(target) else {
-            if let (0, Type::Ref { pointer: true, .. }) = (v, self.cx.defs.types.get(target)) {
-                return constant(0, target);
+            if let Type::Ref { pointer: true, .. } = self.cx.defs.types.get(target)
+                && let Ok(offset) = u32::try_from(v)
+            {
+                return constant(u64::from(offset), target);
             }
             let ty = Types::elem(rules::default_integer(v).unwrap_or(Elem::Lint));
             return self.mismatch(constant(0, ty), ty, target);

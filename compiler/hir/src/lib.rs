@@ -22,14 +22,19 @@ mod expr;
 pub mod init;
 mod initial;
 mod literal;
+mod open_array;
 mod operators;
 mod place;
 pub mod print;
+mod references;
 mod resolve;
 pub mod rules;
+pub mod shape;
+mod sizes;
 mod std_call;
 mod time_arithmetic;
 pub mod types;
+pub mod visit;
 
 pub use app::Application;
 pub use body::Body;
@@ -63,6 +68,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     cx.init_all();
     body_check::check_all(&mut cx);
     cycles::recursion(&mut cx);
+    references::spread_addresses(&mut cx.defs);
     let app = config::configure(&mut cx, units, selection);
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }

@@ -333,6 +333,9 @@ impl<'a> Checker<'_, 'a> {
         if let (Some(x), Some(y)) = (exact(&a), exact(&b)) {
             return self.exact_arithmetic(op, x, y, at, span);
         }
+        if let Some(result) = self.reference_arithmetic(op, &a, &b, sides, span) {
+            return result;
+        }
         let (ea, eb) = match self.arithmetic_elems(op, &a, &b, sides, span) {
             Some(elems) => elems,
             None => return Operand::Error,

@@ -96,10 +96,11 @@ impl<'a> Checker<'_, 'a> {
                 let base = self.place(base)?;
                 self.part(base, part, e.span)
             }
-            ast::ExprKind::Deref(base) => {
+            ast::ExprKind::Deref(base) if is_place(base) => {
                 let base = self.place(base)?;
                 self.deref(base, e.span)
             }
+            ast::ExprKind::Deref(base) => self.deref_value(base, e.span),
             ast::ExprKind::Address(text) => self.direct_address(text, e.span),
             ast::ExprKind::Error => None,
             _ => {
@@ -280,10 +281,10 @@ impl<'a> Checker<'_, 'a> {
     fn index(&mut self, mut base: Place, indices: &'a [ast::Expr], span: Span) -> Option<Place> {
         let (dims, elem) = match self.cx.defs.types.get(base.ty).clone() {
             Type::Array { dims, elem } => (dims, elem),
-            Type::AnyArray { .. } => {
-                self.not_yet(span, "ARRAY [*]");
-                return None;
+            Type::AnyArray { dims, elem } if dims == indices.len() => {
+                return self.open_index(base, elem, indices, span);
             }
+            Type::AnyArray { dims, elem } => (vec![(i64::MIN, i64::MAX); dims], elem),
             Type::String { .. } | Type::AnyString { .. } => {
                 self.not_yet(span, "access to single characters of a string");
                 return None;
@@ -310,15 +311,7 @@ impl<'a> Checker<'_, 'a> {
         }
         let mut list = Vec::new();
         for (e, (low, high)) in indices.iter().zip(&dims) {
-            let operand = self.operand(e, None);
-            let index = match operand {
-                Operand::Int(_) => self.coerce(operand, e.span, Types::elem(Elem::Lint)),
-                Operand::Error => return None,
-                operand => self.index_value(operand, e.span)?,
-            };
-            if index.ty == Types::ERROR {
-                return None;
-            }
+            let index = self.subscript(e)?;
             if let ExprKind::Const(raw) = index.kind {
                 let v = raw as i64;
                 if v < *low || v > *high {
@@ -338,6 +331,16 @@ impl<'a> Checker<'_, 'a> {
         base.ty = elem;
         base.span = span;
         (elem != Types::ERROR).then_some(base)
+    }
+
+    /// A subscript as LINT.
+    pub fn subscript(&mut self, e: &'a ast::Expr) -> Option<Expr> {
+        let index = match self.operand(e, None) {
+            operand @ Operand::Int(_) => self.coerce(operand, e.span, Types::elem(Elem::Lint)),
+            Operand::Error => return None,
+            operand => self.index_value(operand, e.span)?,
+        };
+        (index.ty != Types::ERROR).then_some(index)
     }
 
     /// An index as LINT: integers, enumerations' numbers, bit strings by value (warning in strict).
@@ -460,6 +463,25 @@ impl<'a> Checker<'_, 'a> {
         Some(base)
     }
 
+    /// `f(x)^`, `(p + 4)^`: follows a reference that an expression gives.
+    fn deref_value(&mut self, base: &'a ast::Expr, span: Span) -> Option<Place> {
+        let value = self.any_value(base);
+        match *self.cx.defs.types.get(value.ty) {
+            Type::Ref { target, .. } if target != Types::ERROR => {
+                Some(Place { root: Root::Deref(Box::new(value)), steps: Vec::new(), ty: target, span })
+            }
+            Type::Ref { .. } | Type::Error => None,
+            _ => {
+                let ty = self.cx.type_name(value.ty);
+                self.report(
+                    Diagnostic::new(codes::NOT_A_REFERENCE, span, format!("{ty} cannot be followed with ^"))
+                        .help("only REF_TO and POINTER TO can"),
+                );
+                None
+            }
+        }
+    }
+
     /// `%MW4` used directly: the bit-string type of its size (\[R4\]).
     fn direct_address(&mut self, text: &str, span: Span) -> Option<Place> {
         match crate::address::parse(text) {
@@ -505,10 +527,10 @@ impl<'a> Checker<'_, 'a> {
                     text = format!("{text}.{}", self.cx.defs.vars[*var].name);
                     ty = self.cx.defs.vars[*var].ty;
                 }
-                Step::Index(_, _) => {
+                Step::Index(..) | Step::OpenIndex(..) => {
                     text.push_str("[...]");
                     match self.cx.defs.types.get(ty) {
-                        Type::Array { elem, .. } => ty = *elem,
+                        Type::Array { elem, .. } | Type::AnyArray { elem, .. } => ty = *elem,
                         _ => return text,
                     }
                 }
@@ -538,5 +560,19 @@ impl<'a> Checker<'_, 'a> {
     pub fn type_of_var(&mut self, var: VarId) -> TypeId {
         self.cx.var_type(var);
         self.cx.defs.vars[var].ty
+    }
+}
+
+/// Whether an expression names a place, not a value.
+fn is_place(e: &ast::Expr) -> bool {
+    match &e.kind {
+        ast::ExprKind::Name(_)
+        | ast::ExprKind::Member(..)
+        | ast::ExprKind::Index(..)
+        | ast::ExprKind::Part(..)
+        | ast::ExprKind::Deref(_)
+        | ast::ExprKind::Address(_)
+        | ast::ExprKind::Error => true,
+        _ => false,
     }
 }

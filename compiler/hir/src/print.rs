@@ -297,6 +297,10 @@ impl Printer<'_> {
                 Step::Member(var) => {
                     let _ = write!(text, ".{}", self.defs.vars[*var].name);
                 }
+                Step::OpenIndex(indices, _) => {
+                    let values: Vec<String> = indices.iter().map(|i| self.expr(&i.value)).collect();
+                    let _ = write!(text, "[{}]", values.join(", "));
+                }
                 Step::Index(indices, _) => {
                     let _ = write!(text, "[{}]", self.args(indices));
                 }

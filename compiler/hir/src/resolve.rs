@@ -114,6 +114,13 @@ impl<'a> Cx<'a> {
         Resolved::error()
     }
 
+    /// The type of a name, without a message if there is none.
+    pub fn type_named(&mut self, name: &ast::Name) -> Option<TypeId> {
+        let key = fold(&name.text);
+        let known = self.types.contains_key(&key) || self.pous.contains_key(&key) || Elem::from_name(&key).is_some();
+        known.then(|| self.resolve_named(name, false).ty)
+    }
+
     /// The type that a TYPE declaration makes.
     pub fn resolve_slot(&mut self, slot: usize, at: Span, behind_reference: bool) -> Resolved {
         match &self.type_slots[slot].state {
@@ -377,14 +384,16 @@ impl<'a> Cx<'a> {
             if let (Section::InOut, ast::TypeExprKind::String { wide, length: None }) = (section, &te.kind) {
                 resolved.ty = self.defs.types.intern(Type::AnyString { wide: *wide });
             }
-            if let Type::AnyArray { .. } = self.defs.types.get(resolved.ty)
-                && !matches!(section, Section::InOut | Section::Input | Section::Output)
-            {
-                self.push(
-                    Diagnostic::new(codes::BAD_BOUNDS, te.span, "only a parameter may be an ARRAY [*]")
-                        .help("write the bounds"),
-                );
-                resolved = Resolved::error();
+            match *self.defs.types.get(resolved.ty) {
+                Type::AnyArray { dims, .. } if section == Section::InOut => self.declare_bounds(var, dims),
+                Type::AnyArray { .. } => {
+                    self.push(
+                        Diagnostic::new(codes::BAD_BOUNDS, te.span, "only a VAR_IN_OUT may be an ARRAY [*]")
+                            .help("write the bounds, or pass the array as VAR_IN_OUT"),
+                    );
+                    resolved = Resolved::error();
+                }
+                _ => {}
             }
             self.defs.vars[var].ty = resolved.ty;
             init = resolved.init;

@@ -14,7 +14,6 @@
 //! the same distance from the first byte for each instance, so that the body reaches both with constant offsets.
 
 mod retain;
-pub mod shape;
 
 use crate::lower::reach::Reach;
 use index_vec::IndexVec;
@@ -24,7 +23,8 @@ use plcc_hir::{Area, Defs, PouId, PouKind, Section, StructId, Type, TypeId, Var,
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::region::HEADER_BYTES;
 use rustc_hash::FxHashMap;
-use shape::{Shape, Shapes, address_taken, elem, in_instance};
+use plcc_hir::elem_of;
+use plcc_hir::shape::{Shape, Shapes, address_taken, in_instance};
 
 /// Largest region, bytes.
 pub const MAX_REGION_BYTES: u64 = 1 << 31;
@@ -230,7 +230,7 @@ impl Layout {
 
 /// Whether a located variable may show bytes as BOOL that others at its address wrote as numbers.
 fn overlaps(defs: &Defs, var: &Var) -> bool {
-    let scalar = elem(defs, var.ty);
+    let scalar = elem_of(defs, var.ty);
     var.address.is_some_and(|a| a.bit.is_none()) && (scalar.is_none() || scalar == Some(Elem::Bool))
 }
 

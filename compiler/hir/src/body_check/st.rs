@@ -156,6 +156,13 @@ impl<'a> St<'_, 'a> {
                 );
                 false
             }
+            Type::AnyArray { .. } => {
+                self.c.report(
+                    Diagnostic::new(codes::NOT_WRITABLE, place.span, "an ARRAY [*] cannot be assigned as a whole")
+                        .help("its size is that of the call; assign the elements in a loop"),
+                );
+                false
+            }
             Type::String { .. } | Type::AnyString { .. } => {
                 self.c.not_yet(place.span, "assigning strings");
                 false

@@ -8,7 +8,7 @@ use super::place::{Access, Purpose};
 use crate::build::Builder;
 use crate::ir::{Base, BlockId, Place, ValueId};
 use crate::layout::Slot;
-use crate::layout::shape::repr;
+use plcc_hir::shape::repr;
 use plcc_diag::bug;
 use plcc_hir::body::{self, Call, Callee, Expr};
 use plcc_hir::{Init, PouId, PouKind, Section, TypeId, VarId};

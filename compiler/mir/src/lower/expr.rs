@@ -3,7 +3,8 @@
 use super::func::FuncLower;
 use super::place::Purpose;
 use crate::ir::{Place, ValueId};
-use crate::layout::shape::{elem, repr};
+use plcc_hir::elem_of;
+use plcc_hir::shape::repr;
 use plcc_diag::bug;
 use plcc_hir::TypeId;
 use plcc_hir::body::{Expr, ExprKind, Step};
@@ -99,7 +100,7 @@ impl FuncLower<'_, '_> {
     }
 
     fn check_subrange(&mut self, value: ValueId, ty: TypeId, low: i128, high: i128) {
-        let Some(elem) = elem(self.defs, ty) else { bug!("a subrange of {:?}", self.defs.types[ty]) };
+        let Some(elem) = elem_of(self.defs, ty) else { bug!("a subrange of {:?}", self.defs.types[ty]) };
         let wide = self.b.resize(value, elem.is_signed(), Repr::I64);
         if elem.is_signed() || elem.bits() < 64 {
             // Limits outside the type hold for every value.
@@ -182,5 +183,10 @@ pub(super) fn calls(expr: &Expr) -> bool {
 /// As [`calls`], for the indices and references of a place.
 pub(super) fn place_calls(place: &HirPlace) -> bool {
     let root = matches!(&place.root, Root::Deref(reference) if calls(reference));
-    root || place.steps.iter().any(|s| matches!(s, Step::Index(indices, _) if indices.iter().any(calls)))
+    root || place.steps.iter().any(|step| match step {
+        Step::Index(indices, _) => indices.iter().any(calls),
+        // The bounds are variables.
+        Step::OpenIndex(indices, _) => indices.iter().any(|i| calls(&i.value)),
+        Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
+    })
 }

@@ -18,7 +18,7 @@ use super::expr::calls;
 use super::func::{FuncLower, Loop};
 use super::place::{Access, constant};
 use crate::ir::ValueId;
-use crate::layout::shape::elem;
+use plcc_hir::elem_of;
 use plcc_diag::{Span, bug};
 use plcc_hir::Type;
 use plcc_hir::body::{Expr, Place, Stmt, StmtKind};
@@ -41,7 +41,7 @@ enum Step {
 impl FuncLower<'_, '_> {
     /// A FOR statement.
     pub fn for_(&mut self, span: Span, var: &Place, from: &Expr, to: &Expr, by: Option<&Expr>, body: &[Stmt]) {
-        let Some(ty) = elem(self.defs, var.ty) else { bug!("FOR over {:?}", self.defs.types[var.ty]) };
+        let Some(ty) = elem_of(self.defs, var.ty) else { bug!("FOR over {:?}", self.defs.types[var.ty]) };
         let repr = ty.repr();
         let variable = self.place(var);
         let first = self.value(from);
@@ -105,7 +105,7 @@ impl FuncLower<'_, '_> {
     fn step_value(&mut self, span: Span, ty: Elem, by: Option<&Expr>) -> (Step, ValueId) {
         let repr = ty.repr();
         let Some(by) = by else { return (Step::Constant(1), self.b.number(repr, 1)) };
-        let Some(step_type) = elem(self.defs, by.ty) else { bug!("a FOR step of {:?}", self.defs.types[by.ty]) };
+        let Some(step_type) = elem_of(self.defs, by.ty) else { bug!("a FOR step of {:?}", self.defs.types[by.ty]) };
         if let Some(raw) = constant(by) {
             let step = step_type.to_i128(raw);
             if step != 0 {

@@ -6,7 +6,7 @@
 use super::{Context, init};
 use crate::build::Builder;
 use crate::ir::{Base, BlockId, Func, Place, Source};
-use crate::layout::shape::repr;
+use plcc_hir::shape::repr;
 use crate::layout::{MAX_REGION_BYTES, Slot, TooLarge};
 use index_vec::IndexVec;
 use plcc_diag::{Span, bug};
@@ -268,6 +268,6 @@ impl<'c, 'a> FuncLower<'c, 'a> {
 
     /// Whether a type is BOOL.
     pub fn is_bool(&self, ty: TypeId) -> bool {
-        crate::layout::shape::elem(self.defs, ty) == Some(plcc_stdlib::elem::Elem::Bool)
+        plcc_hir::elem_of(self.defs, ty) == Some(plcc_stdlib::elem::Elem::Bool)
     }
 }

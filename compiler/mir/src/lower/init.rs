@@ -4,7 +4,7 @@
 //! type (semantics.md \[T9\]).
 
 use crate::ir::Segment;
-use crate::layout::shape::elem;
+use plcc_hir::elem_of;
 use crate::layout::{Layout, Slot};
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
@@ -27,7 +27,7 @@ pub fn scalar(defs: &Defs, ty: TypeId, init: &Init) -> Option<u64> {
         _ => return None,
     };
     // Negative numbers come sign-extended, registers are zero-extended.
-    let mask = elem(defs, ty).map_or(u64::from(u32::MAX), |e| e.repr().mask());
+    let mask = elem_of(defs, ty).map_or(u64::from(u32::MAX), |e| e.repr().mask());
     Some(raw & mask)
 }
 

@@ -51,13 +51,17 @@ fn append(defs: &Defs, text: &mut String, ty: Option<TypeId>, step: &Step) -> Op
             text.push_str(&defs.vars[*id].name);
             Some(defs.vars[*id].ty)
         }
-        Step::Index(indices, _) => {
+        Step::Index(..) | Step::OpenIndex(..) => {
             let number = |e: &Expr| constant(e).map_or("..".to_string(), |raw| (raw as i64).to_string());
-            let list: Vec<String> = indices.iter().map(number).collect();
+            let list: Vec<String> = match step {
+                Step::OpenIndex(indices, _) => indices.iter().map(|i| number(&i.value)).collect(),
+                Step::Index(indices, _) => indices.iter().map(number).collect(),
+                _ => Vec::new(),
+            };
             // Writing to a String cannot fail.
             let _ = write!(text, "[{}]", list.join(","));
             match ty.map(|ty| &defs.types[ty]) {
-                Some(Type::Array { elem, .. }) => Some(*elem),
+                Some(Type::Array { elem, .. } | Type::AnyArray { elem, .. }) => Some(*elem),
                 _ => None,
             }
         }

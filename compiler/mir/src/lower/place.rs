@@ -6,9 +6,11 @@
 use super::func::FuncLower;
 use super::path;
 use crate::ir::{Base, IndexTerm, Place, ValueId};
-use crate::layout::shape::{address_taken, elem, extent, repr};
+use crate::layout::MAX_REGION_BYTES;
+use plcc_hir::elem_of;
+use plcc_hir::shape::{address_taken, extent, repr};
 use plcc_diag::bug;
-use plcc_hir::body::{self, Expr, ExprKind, Root, Step};
+use plcc_hir::body::{self, Expr, ExprKind, OpenIndex, Root, Step};
 use plcc_hir::{PouKind, Type, TypeId, Types, VarId};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::fault::Fault;
@@ -183,6 +185,7 @@ impl FuncLower<'_, '_> {
                 }
             }
             Step::Index(indices, name) => self.index(access, indices, name),
+            Step::OpenIndex(indices, name) => self.open_index(access, indices, name),
             Step::Deref => {
                 let Type::Ref { target, .. } = self.defs.types[access.ty] else {
                     bug!("a dereference of {:?}", access.ty)
@@ -205,7 +208,7 @@ impl FuncLower<'_, '_> {
             access.ty = Types::elem(to);
             return;
         }
-        let (word, outer) = match (access.part, elem(self.defs, access.ty)) {
+        let (word, outer) = match (access.part, elem_of(self.defs, access.ty)) {
             (Some(part), _) => (part.word, part.shift),
             (None, Some(word)) => (word, 0),
             (None, None) => bug!("a part of {:?}", self.defs.types[access.ty]),
@@ -255,6 +258,45 @@ impl FuncLower<'_, '_> {
             access.place.index.push(term);
         }
         access.ty = *elem;
+        access.normalise |= self.cx.layout.aliasing;
+    }
+
+    /// Indices into an array whose bounds are values: the elements are counted through all dimensions.
+    fn open_index(&mut self, access: &mut Access, indices: &[OpenIndex], name: &str) {
+        let Type::AnyArray { elem, .. } = self.defs.types[access.ty] else {
+            bug!("an open index into {:?}", self.defs.types[access.ty])
+        };
+        let mut flat: Option<ValueId> = None;
+        for index in indices {
+            let mut value = self.value(&index.value);
+            let (low, high) = (self.value(&index.low), self.value(&index.high));
+            if self.cx.checks.index {
+                let from = self.b.op(PrimOp::LeS, Repr::I64, &[low, value]);
+                let to = self.b.op(PrimOp::LeS, Repr::I64, &[value, high]);
+                let ok = self.b.op(PrimOp::And, Repr::I8, &[from, to]);
+                self.at(index.value.span, name);
+                self.b.check_true(ok, Fault::IndexOutOfBounds, &[value, low, high]);
+            } else {
+                value = self.b.op(PrimOp::MaxS, Repr::I64, &[value, low]);
+                value = self.b.op(PrimOp::MinS, Repr::I64, &[value, high]);
+            }
+            let mut number = self.b.op(PrimOp::Sub, Repr::I64, &[value, low]);
+            if let Some(outer) = flat {
+                let one = self.b.number(Repr::I64, 1);
+                let span = self.b.op(PrimOp::Sub, Repr::I64, &[high, low]);
+                let count = self.b.op(PrimOp::Add, Repr::I64, &[span, one]);
+                let rows = self.b.op(PrimOp::Mul, Repr::I64, &[outer, count]);
+                number = self.b.op(PrimOp::Add, Repr::I64, &[rows, number]);
+            }
+            flat = Some(number);
+        }
+        let Some(value) = flat else { bug!("an open array without dimensions") };
+        let bytes = self.cx.layout.shapes.of(self.defs, elem).bytes.max(1);
+        let stride = u32::try_from(bytes).unwrap_or(u32::MAX);
+        // However large the actual array is, it lies in the region.
+        let high = (MAX_REGION_BYTES / u64::from(stride)) as i64;
+        access.place.index.push(IndexTerm { value, stride, low: 0, high });
+        access.ty = elem;
         access.normalise |= self.cx.layout.aliasing;
     }
 

@@ -3,7 +3,8 @@
 //! In: checked bodies. Out: [`Reach`]. The layout needs it before any body is lowered.
 
 use plcc_hir::app::Resource;
-use plcc_hir::body::{Call, Callee, Expr, ExprKind, Place, Root, Step, Stmt, StmtKind};
+use plcc_hir::body::{Call, Callee, Place, Root};
+use plcc_hir::visit::{self, Use, Visitor};
 use plcc_hir::{Address, Defs, PouId, PouKind, TypeId};
 
 /// What the code of a resource reaches.
@@ -33,11 +34,11 @@ impl Reach {
         let mut reach = Self { seen: vec![false; defs.pous.len()], ..Self::default() };
         for program in &resource.programs {
             reach.pou(program.pou);
-            program.inputs.iter().for_each(|(_, value)| reach.expr(value));
-            program.outputs.iter().for_each(|(_, place)| reach.place(place, false));
+            program.inputs.iter().for_each(|(_, value)| visit::expr(value, &mut reach));
+            program.outputs.iter().for_each(|(_, place)| visit::place(place, Use::Written, &mut reach));
         }
         for task in &resource.tasks {
-            task.single.iter().for_each(|place| reach.place(place, false));
+            task.single.iter().for_each(|place| visit::place(place, Use::Read, &mut reach));
         }
         if all {
             defs.pous.iter_enumerated().filter(|(_, pou)| !pou.builtin).for_each(|(id, _)| reach.pou(id));
@@ -51,7 +52,7 @@ impl Reach {
                 // The frame of an action starts with its owner's VAR_TEMPs.
                 reach.pou(owner);
             }
-            reach.stmts(&defs.bodies[id].stmts);
+            visit::stmts(&defs.bodies[id].stmts, &mut reach);
         }
         reach
     }
@@ -61,93 +62,18 @@ impl Reach {
             self.pous.push(id);
         }
     }
+}
 
-    fn stmts(&mut self, stmts: &[Stmt]) {
-        for stmt in stmts {
-            self.stmt(stmt);
-        }
-    }
-
-    fn stmt(&mut self, stmt: &Stmt) {
-        match &stmt.kind {
-            StmtKind::Assign { target, value } => {
-                self.place(target, false);
-                self.expr(value);
-            }
-            StmtKind::Call(call) => self.call(call),
-            StmtKind::Eval(value) => self.expr(value),
-            StmtKind::If { arms, otherwise } => {
-                for (cond, body) in arms {
-                    self.expr(cond);
-                    self.stmts(body);
-                }
-                self.stmts(otherwise);
-            }
-            StmtKind::Case { selector, arms, otherwise } => {
-                self.expr(selector);
-                arms.iter().for_each(|arm| self.stmts(&arm.body));
-                self.stmts(otherwise);
-            }
-            StmtKind::For { var, from, to, by, body } => {
-                self.place(var, false);
-                self.expr(from);
-                self.expr(to);
-                by.iter().for_each(|e| self.expr(e));
-                self.stmts(body);
-            }
-            StmtKind::While(cond, body) | StmtKind::Repeat(body, cond) => {
-                self.expr(cond);
-                self.stmts(body);
-            }
-            StmtKind::Jump(_, cond) => cond.iter().for_each(|e| self.expr(e)),
-            StmtKind::Exit | StmtKind::Continue | StmtKind::Return | StmtKind::Label(_) => {}
-        }
-    }
-
-    fn expr(&mut self, expr: &Expr) {
-        match &expr.kind {
-            ExprKind::Read(place) => self.place(place, false),
-            ExprKind::RefOf(place) => self.place(place, true),
-            ExprKind::Op(_, _, operands) => operands.iter().for_each(|e| self.expr(e)),
-            ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => {
-                self.expr(a);
-                self.expr(b);
-            }
-            ExprKind::Convert(_, _, e) | ExprKind::Retype(e) | ExprKind::RangeCheck { value: e, .. } => self.expr(e),
-            ExprKind::Call(call) => self.call(call),
-            ExprKind::Std { args, .. } => args.iter().for_each(|e| self.expr(e)),
-            ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {}
-        }
-    }
-
-    fn place(&mut self, place: &Place, taken: bool) {
-        match &place.root {
-            // The type of the innermost thing bounds the access from below; steps into an address stay inside it.
-            Root::Address(address) => {
-                self.addresses.push(DirectAddress { address: *address, ty: place.ty, taken });
-            }
-            Root::Deref(reference) => self.expr(reference),
-            Root::Var(_) | Root::Temp(_) => {}
-        }
-        for step in &place.steps {
-            if let Step::Index(indices, _) = step {
-                indices.iter().for_each(|e| self.expr(e));
-            }
+impl Visitor for Reach {
+    fn place(&mut self, place: &Place, how: Use) {
+        // The type of the innermost thing bounds the access from below; steps into an address stay inside it.
+        if let Root::Address(address) = place.root {
+            self.addresses.push(DirectAddress { address, ty: place.ty, taken: how == Use::Referenced });
         }
     }
 
     fn call(&mut self, call: &Call) {
-        match &call.callee {
-            Callee::Function(pou) | Callee::Action(None, pou) => self.pou(*pou),
-            Callee::Instance(place, pou) | Callee::Action(Some(place), pou) => {
-                self.place(place, false);
-                self.pou(*pou);
-            }
-        }
-        call.inputs.iter().for_each(|(_, e)| self.expr(e));
-        call.in_outs.iter().for_each(|(_, place)| self.place(place, false));
-        call.outputs.iter().for_each(|out| self.place(&out.target, false));
-        call.en.iter().for_each(|e| self.expr(e));
-        call.eno.iter().for_each(|place| self.place(place, false));
+        let (Callee::Function(pou) | Callee::Instance(_, pou) | Callee::Action(_, pou)) = call.callee;
+        self.pou(pou);
     }
 }

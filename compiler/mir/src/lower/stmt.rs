@@ -2,7 +2,8 @@
 
 use super::func::{FuncLower, Label, Loop};
 use crate::ir::{BlockId, ValueId};
-use crate::layout::shape::{elem, repr};
+use plcc_hir::elem_of;
+use plcc_hir::shape::repr;
 use plcc_diag::{Span, bug};
 use plcc_hir::body::{CaseArm, Expr, LabelId, Place, Stmt, StmtKind};
 use plcc_stdlib::prim::{PrimOp, Repr};
@@ -89,7 +90,7 @@ impl FuncLower<'_, '_> {
 
     /// Labels do not overlap, so their order does not matter: single values in a switch, long ranges behind it.
     fn case(&mut self, selector: &Expr, arms: &[CaseArm], otherwise: &[Stmt]) {
-        let Some(elem) = elem(self.defs, selector.ty) else { bug!("a CASE of {:?}", self.defs.types[selector.ty]) };
+        let Some(elem) = elem_of(self.defs, selector.ty) else { bug!("a CASE of {:?}", self.defs.types[selector.ty]) };
         let (repr, (min, max)) = (elem.repr(), elem.range().unwrap_or((0, 0)));
         let value = self.value(selector);
         let (join, ranges) = (self.b.block(), self.b.block());

@@ -6,7 +6,7 @@ use super::func::FuncLower;
 use super::place::Access;
 use crate::build::Builder;
 use crate::ir::{Base, Func, FuncId, Place, Program};
-use crate::layout::shape::repr;
+use plcc_hir::shape::repr;
 use crate::verify::bottom_up;
 use index_vec::IndexVec;
 use plcc_diag::bug;

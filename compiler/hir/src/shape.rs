@@ -5,7 +5,8 @@
 //! Sizes are 64-bit and saturate, so that no declaration can overflow them; the layout refuses what is too large.
 
 use index_vec::IndexVec;
-use plcc_hir::{Defs, Init, PouId, PouKind, Section, StructId, Type, TypeId, Var, VarId};
+use crate::cx::elem_of;
+use crate::{Defs, Init, PouId, PouKind, Section, StructId, Type, TypeId, Var, VarId};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::prim::Repr;
 
@@ -37,7 +38,8 @@ impl Default for Shape {
 }
 
 impl Shape {
-    const EMPTY: Shape =
+    /// Nothing.
+    pub const EMPTY: Shape =
         Shape { bytes: 0, align: 1, address_taken: false, references: false, retain: false, initialised: false };
 
     fn scalar(bytes: u32) -> Self {
@@ -45,7 +47,7 @@ impl Shape {
     }
 
     /// Appends a component; gives its offset.
-    pub(super) fn push(&mut self, part: Shape) -> u64 {
+    pub fn push(&mut self, part: Shape) -> u64 {
         let offset = self.bytes.next_multiple_of(part.align);
         self.bytes = (offset + part.bytes).min(HUGE);
         self.merge(part);
@@ -83,20 +85,11 @@ pub fn address_taken(var: &Var) -> bool {
     var.address_taken && var.section != Section::InOut
 }
 
-/// The elementary type by which a scalar lies in memory; `None` for references and aggregates.
-pub fn elem(defs: &Defs, ty: TypeId) -> Option<Elem> {
-    match &defs.types[ty] {
-        Type::Elem(elem) | Type::Subrange { base: elem, .. } => Some(*elem),
-        Type::Enum(id) => Some(defs.enums[*id].base),
-        _ => None,
-    }
-}
-
 /// The representation of a scalar, references too; `None` for aggregates, strings and no value.
 pub fn repr(defs: &Defs, ty: TypeId) -> Option<Repr> {
     match &defs.types[ty] {
         Type::Ref { .. } | Type::Null => Some(Repr::I32),
-        _ => elem(defs, ty).map(Elem::repr),
+        _ => elem_of(defs, ty).map(Elem::repr),
     }
 }
 
@@ -115,6 +108,16 @@ impl Shapes {
             shapes.instance(defs, id);
         }
         shapes
+    }
+
+    /// The size of one type in bytes, while declarations are still being resolved: what lies inside `ty` must be.
+    pub fn size_of(defs: &Defs, ty: TypeId) -> u64 {
+        let mut shapes = Self {
+            structs: defs.structs.iter().map(|_| None).collect(),
+            instances: defs.pous.iter().map(|_| None).collect(),
+            members: defs.vars.iter().map(|_| None).collect(),
+        };
+        shapes.work_out(defs, ty).bytes
     }
 
     /// The shape of a type.
@@ -166,6 +169,8 @@ impl Shapes {
         if let Some((shape, _)) = &self.structs[id] {
             return *shape;
         }
+        // A structure that contains itself is an error that may not have been cut yet.
+        self.structs[id] = Some((Shape::EMPTY, Vec::new()));
         let def = &defs.structs[id];
         let mut shape = Shape::EMPTY;
         let mut offsets = Vec::with_capacity(def.fields.len());
@@ -189,6 +194,7 @@ impl Shapes {
         if let Some(shape) = self.instances[id] {
             return shape;
         }
+        self.instances[id] = Some(Shape::EMPTY);
         let mut shape = Shape::EMPTY;
         if matches!(defs.pous[id].kind, PouKind::FunctionBlock | PouKind::Program) {
             for &id in &defs.pous[id].vars {
