@@ -490,6 +490,17 @@ VAR w : WORD; s : Set; END_VAR\n\
 s(b := w.3);\n\
 END_PROGRAM\n\
 ```\n";
+    ATTEMPT_FAILS "W0319" Warning "an assignment attempt that always gives NULL" "\
+`?=` assigns a reference if it refers to something of the target's type, else NULL. Types without inheritance are the same\n\
+or never the same, so this statement always assigns NULL.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR i : INT; a : REF_TO INT; b : REF_TO REAL; END_VAR\n\
+a := REF(i);\n\
+b ?= a;\n\
+END_PROGRAM\n\
+```\n";
     NOT_WRITABLE "E0320" Error "this cannot be assigned" "\
 Constants, outputs of instances (from outside), input addresses and whole instances are not assigned.\n\
 \n\

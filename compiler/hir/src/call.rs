@@ -233,7 +233,8 @@ impl<'a> Checker<'_, 'a> {
     /// Parameters of a POU as a call sees them.
     fn parameters(&self, pou: PouId, section: &[Section]) -> Vec<VarId> {
         let vars = self.cx.defs.pous[pou].vars.iter().copied();
-        vars.filter(|v| section.contains(&self.cx.defs.vars[*v].section) && !self.cx.defs.vars[*v].is_hidden()).collect()
+        vars.filter(|v| section.contains(&self.cx.defs.vars[*v].section) && !self.cx.defs.vars[*v].is_hidden())
+            .collect()
     }
 
     fn user_call(&mut self, callee: Callee, pou: PouId, call: &'a ast::Call, span: Span) -> Option<Call> {

@@ -196,6 +196,7 @@ pub(crate) fn new_var<'a>(
         retain: false,
         address: None,
         init: Init::Default,
+        refers_to: None,
         address_taken: false,
         span,
     });

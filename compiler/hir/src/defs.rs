@@ -121,6 +121,8 @@ pub struct Var {
     pub address: Option<Address>,
     /// The initial value; complete, with the type's own where none is written.
     pub init: Init,
+    /// A reference that is initialised: `r : REF_TO INT := REF(x)`. A variable, then components and constant indices.
+    pub refers_to: Option<Box<crate::body::Place>>,
     /// `REF(x)`, `ADR(x)` occurs: lies in the addressable part of the region (semantics.md \[R2\]).
     pub address_taken: bool,
     /// Where its name is declared.

@@ -45,10 +45,19 @@ impl<'a> Cx<'a> {
                 );
                 Init::Default
             }
+            Some(ast::Init { kind: ast::InitKind::Expr(e), .. }) if self.is_reference(ty) => {
+                let refers_to = Checker::constant(self, owner).initial_reference(e, ty, section);
+                self.defs.vars[var].refers_to = refers_to.map(Box::new);
+                Init::Default
+            }
             Some(init) => self.initial(init, ty, owner),
             None => from_type,
         };
         self.var_slots[var].init = State::Done(());
+    }
+
+    fn is_reference(&self, ty: TypeId) -> bool {
+        matches!(self.defs.types.get(ty), Type::Ref { .. })
     }
 
     /// Initial values of all variables.

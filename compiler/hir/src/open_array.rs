@@ -56,13 +56,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// `a[i, j]` of an ARRAY [*].
-    pub fn open_index(
-        &mut self,
-        mut base: Place,
-        elem: TypeId,
-        indices: &'a [ast::Expr],
-        span: Span,
-    ) -> Option<Place> {
+    pub fn open_index(&mut self, mut base: Place, elem: TypeId, indices: &'a [ast::Expr], span: Span) -> Option<Place> {
         let bounds = self.open_bounds(&base)?;
         let mut list = Vec::new();
         for (e, [low, high]) in indices.iter().zip(bounds) {
@@ -93,7 +87,8 @@ impl<'a> Checker<'_, 'a> {
                     ty: Types::elem(Elem::Dint),
                     span,
                 };
-                if let Some((low, high)) = dims.iter().find(|(l, h)| i32::try_from(*l).and(i32::try_from(*h)).is_err()) {
+                if let Some((low, high)) = dims.iter().find(|(l, h)| i32::try_from(*l).and(i32::try_from(*h)).is_err())
+                {
                     let message = format!("the bounds {low}..{high} are no DINTs");
                     self.report(
                         Diagnostic::new(codes::IN_OUT_MISMATCH, span, message)

@@ -565,14 +565,6 @@ impl<'a> Checker<'_, 'a> {
 
 /// Whether an expression names a place, not a value.
 fn is_place(e: &ast::Expr) -> bool {
-    match &e.kind {
-        ast::ExprKind::Name(_)
-        | ast::ExprKind::Member(..)
-        | ast::ExprKind::Index(..)
-        | ast::ExprKind::Part(..)
-        | ast::ExprKind::Deref(_)
-        | ast::ExprKind::Address(_)
-        | ast::ExprKind::Error => true,
-        _ => false,
-    }
+    use ast::ExprKind::*;
+    matches!(e.kind, Name(_) | Member(..) | Index(..) | Part(..) | Deref(_) | Address(_) | Error)
 }

@@ -4,9 +4,9 @@
 //! instances have natural alignment, components in order of declaration, and sizes that are multiples of their alignment.
 //! Sizes are 64-bit and saturate, so that no declaration can overflow them; the layout refuses what is too large.
 
-use index_vec::IndexVec;
 use crate::cx::elem_of;
 use crate::{Defs, Init, PouId, PouKind, Section, StructId, Type, TypeId, Var, VarId};
+use index_vec::IndexVec;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::prim::Repr;
 

@@ -115,7 +115,8 @@ fn bound_arguments(call: &ast::Call) -> Option<(&ast::Expr, &ast::Expr)> {
         _ => false,
     };
     let [first, second] = call.args.as_slice() else { return None };
-    let (array, dim) = match (named(first, "ARR") && named(second, "DIM"), named(second, "ARR") && named(first, "DIM")) {
+    let (array, dim) = match (named(first, "ARR") && named(second, "DIM"), named(second, "ARR") && named(first, "DIM"))
+    {
         (true, _) => (first, second),
         (_, true) => (second, first),
         _ => return None,

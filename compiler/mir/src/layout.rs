@@ -19,12 +19,12 @@ use crate::lower::reach::Reach;
 use index_vec::IndexVec;
 use plcc_diag::Span;
 use plcc_hir::app::Resource;
+use plcc_hir::elem_of;
+use plcc_hir::shape::{Shape, Shapes, address_taken, in_instance};
 use plcc_hir::{Area, Defs, PouId, PouKind, Section, StructId, Type, TypeId, Var, VarId};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::region::HEADER_BYTES;
 use rustc_hash::FxHashMap;
-use plcc_hir::elem_of;
-use plcc_hir::shape::{Shape, Shapes, address_taken, in_instance};
 
 /// Largest region, bytes.
 pub const MAX_REGION_BYTES: u64 = 1 << 31;

@@ -61,10 +61,7 @@ impl<'a> St<'_, 'a> {
         let span = stmt.span;
         let kind = match &stmt.kind {
             ast::StmtKind::Assign(target, value) => self.assign(target, value),
-            ast::StmtKind::AssignAttempt(target, _) => {
-                self.c.not_yet(target.span.to(span), "?=");
-                None
-            }
+            ast::StmtKind::AssignAttempt(target, value) => self.attempt(target, value, span),
             ast::StmtKind::Expr(e) => self.expr_statement(e),
             ast::StmtKind::If { arms, otherwise } => {
                 let arms = arms.iter().map(|(cond, body)| (self.c.condition(cond), self.list(body))).collect();
@@ -133,6 +130,41 @@ impl<'a> St<'_, 'a> {
         if value.ty == Types::ERROR || !writable || !self.assignable(&place) {
             return None;
         }
+        Some(StmtKind::Assign { target: place, value })
+    }
+
+    /// `r ?= s`: the reference if it is one to the target's type, else NULL (\[R1\]). Without inheritance the types decide.
+    fn attempt(&mut self, target: &'a ast::Expr, value: &'a ast::Expr, span: Span) -> Option<StmtKind> {
+        let place = self.target(target);
+        let mut value = self.c.any_value(value);
+        let place = place?;
+        let types = &self.c.cx.defs.types;
+        let (to, from) = match (types.get(place.ty), types.get(value.ty)) {
+            (_, Type::Error) => return None,
+            (Type::Ref { target: to, .. }, Type::Ref { target: from, .. }) => (*to, *from),
+            (Type::Ref { target: to, .. }, Type::Null) => (*to, *to),
+            (to, _) => {
+                let wrong = if matches!(to, Type::Ref { .. }) { value.ty } else { place.ty };
+                let name = self.c.cx.type_name(wrong);
+                self.c.report(
+                    Diagnostic::new(codes::NOT_A_REFERENCE, span, format!("?= takes references, {name} is none"))
+                        .help("write := for other values"),
+                );
+                return None;
+            }
+        };
+        if !self.c.check_writable(&place) {
+            return None;
+        }
+        if to != from {
+            let (want, have) = (self.c.cx.type_name(to), self.c.cx.type_name(from));
+            self.c.report(
+                Diagnostic::new(codes::ATTEMPT_FAILS, span, format!("a reference to {have} is never one to {want}"))
+                    .help("this assigns NULL; function blocks do not inherit here"),
+            );
+            value = Expr { kind: ExprKind::Const(0), ty: place.ty, span: value.span };
+        }
+        let value = crate::expr::retype(value, place.ty);
         Some(StmtKind::Assign { target: place, value })
     }
 

@@ -3,12 +3,12 @@
 use super::func::FuncLower;
 use super::place::Purpose;
 use crate::ir::{Place, ValueId};
-use plcc_hir::elem_of;
-use plcc_hir::shape::repr;
 use plcc_diag::bug;
 use plcc_hir::TypeId;
 use plcc_hir::body::{Expr, ExprKind, Step};
 use plcc_hir::body::{Place as HirPlace, Root};
+use plcc_hir::elem_of;
+use plcc_hir::shape::repr;
 use plcc_stdlib::convert::convert;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::emit::Val;

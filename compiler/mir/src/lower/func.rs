@@ -3,14 +3,15 @@
 //! The entry block is filled last: only then it is known which local variables the body uses, and the others need no
 //! initial value. Outputs and the result always get theirs, because callers read them.
 
+use super::place::Purpose;
 use super::{Context, init};
 use crate::build::Builder;
 use crate::ir::{Base, BlockId, Func, Place, Source};
-use plcc_hir::shape::repr;
 use crate::layout::{MAX_REGION_BYTES, Slot, TooLarge};
 use index_vec::IndexVec;
 use plcc_diag::{Span, bug};
 use plcc_hir::body::TempId;
+use plcc_hir::shape::repr;
 use plcc_hir::{Body, Defs, Init, PouId, PouKind, Section, TypeId, VarId};
 use plcc_stdlib::prim::Repr;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -228,6 +229,13 @@ impl<'c, 'a> FuncLower<'c, 'a> {
     fn start_afresh(&mut self, variables: PouId, function: bool) {
         for &id in &self.defs.pous[variables].vars {
             let var = &self.defs.vars[id];
+            if let (Some(place), true) = (&var.refers_to, self.used.contains(&id)) {
+                // What it refers to is used by that.
+                self.resolve(place, Purpose::Address);
+            }
+        }
+        for &id in &self.defs.pous[variables].vars {
+            let var = &self.defs.vars[id];
             let fresh = match var.section {
                 Section::Output | Section::Result => function,
                 Section::Local => function && self.used.contains(&id),
@@ -236,7 +244,13 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             };
             if fresh && var.address.is_none() {
                 let place = self.own_place(id);
-                self.store_init(place, var.ty, &var.init);
+                match &var.refers_to {
+                    Some(target) => {
+                        let address = self.address(target, Purpose::Address);
+                        self.b.store(place, address);
+                    }
+                    None => self.store_init(place, var.ty, &var.init),
+                }
             }
         }
     }

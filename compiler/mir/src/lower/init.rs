@@ -4,10 +4,10 @@
 //! type (semantics.md \[T9\]).
 
 use crate::ir::Segment;
-use plcc_hir::elem_of;
 use crate::layout::{Layout, Slot};
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
+use plcc_hir::elem_of;
 use plcc_hir::{Defs, Init, Section, Type, TypeId, VarId};
 use std::collections::BTreeMap;
 

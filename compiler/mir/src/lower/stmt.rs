@@ -2,10 +2,10 @@
 
 use super::func::{FuncLower, Label, Loop};
 use crate::ir::{BlockId, ValueId};
-use plcc_hir::elem_of;
-use plcc_hir::shape::repr;
 use plcc_diag::{Span, bug};
 use plcc_hir::body::{CaseArm, Expr, LabelId, Place, Stmt, StmtKind};
+use plcc_hir::elem_of;
+use plcc_hir::shape::repr;
 use plcc_stdlib::prim::{PrimOp, Repr};
 
 /// A range of CASE labels with at most so many values becomes single values.

@@ -6,11 +6,11 @@ use super::func::FuncLower;
 use super::place::Access;
 use crate::build::Builder;
 use crate::ir::{Base, Func, FuncId, Place, Program};
-use plcc_hir::shape::repr;
 use crate::verify::bottom_up;
 use index_vec::IndexVec;
 use plcc_diag::bug;
 use plcc_hir::app::{self, Resource};
+use plcc_hir::shape::repr;
 use plcc_hir::{Types, VarId};
 
 /// Lowers the entry of task number `index`.

@@ -59,6 +59,7 @@ impl Test {
             retain: false,
             address: None,
             init: Init::Default,
+            refers_to: None,
             address_taken: false,
             span: SPAN,
         });
