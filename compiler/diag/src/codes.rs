@@ -420,7 +420,8 @@ The memory region of a resource is smaller than 2^31 bytes.\n\
 ```st\n\
 PROGRAM Main\n\
 VAR a, b : ARRAY [1..1000000000] OF LINT; END_VAR\n\
-\n\
+a[1] := 1;\n\
+b := a;\n\
 END_PROGRAM\n\
 ```\n";
     NO_VALUE "E0313" Error "a call gives no value" "\
@@ -693,7 +694,8 @@ REAL holds integers up to 2^24 exactly, LREAL up to 2^53.\n\
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR d : DINT; r : REAL; END_VAR\n\
+VAR_INPUT d : DINT; END_VAR\n\
+VAR r : REAL; END_VAR\n\
 r := d;\n\
 END_PROGRAM\n\
 ```\n";
@@ -702,7 +704,8 @@ Each operation is done at the type of its operands and wraps there; a wider targ
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b : INT; d : DINT; END_VAR\n\
+VAR_INPUT a, b : INT; END_VAR\n\
+VAR d : DINT; END_VAR\n\
 d := a * b;\n\
 END_PROGRAM\n\
 ```\n";
@@ -711,7 +714,7 @@ The characters that do not fit are cut off.\n\
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR s : STRING[3] := 'abcdef'; END_VAR\n\
+VAR_OUTPUT s : STRING[3] := 'abcdef'; END_VAR\n\
 \n\
 END_PROGRAM\n\
 ```\n";
@@ -720,7 +723,8 @@ Rounding makes equality of computed reals a matter of luck.\n\
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b : REAL; q : BOOL; END_VAR\n\
+VAR_INPUT a, b : REAL; END_VAR\n\
+VAR q : BOOL; END_VAR\n\
 q := a = b;\n\
 END_PROGRAM\n\
 ```\n";
@@ -771,7 +775,8 @@ Values without a label do nothing; add them, or an ELSE that says so.\n\
 ```st\n\
 TYPE Temp : (Cold, Warm, Hot); END_TYPE\n\
 PROGRAM Main\n\
-VAR t : Temp; x : INT; END_VAR\n\
+VAR_INPUT t : Temp; END_VAR\n\
+VAR x : INT; END_VAR\n\
 CASE t OF\n\
 \x20 Cold: x := 1;\n\
 \x20 Warm: x := 2;\n\
@@ -783,8 +788,65 @@ SR has the pins S1, R, Q1 and RS has S, R1, Q1: the 1 marks the dominant input. 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR latch : SR; b : BOOL; END_VAR\n\
+VAR_INPUT b : BOOL; END_VAR\n\
+VAR latch : SR; END_VAR\n\
 latch(S := b, R := FALSE);\n\
+END_PROGRAM\n\
+```\n";
+    UNUSED_VARIABLE "W0351" Warning "a variable is never used" "\
+No statement of its POU, its actions or another declaration names the variable.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR spare : INT; END_VAR\n\
+VAR_OUTPUT lamp : BOOL; END_VAR\n\
+lamp := TRUE;\n\
+END_PROGRAM\n\
+```\n";
+    NEVER_WRITTEN "W0352" Warning "a variable is never written" "\
+It keeps its initial value for ever: an assignment was forgotten, or it is meant to be a CONSTANT, an input (VAR_INPUT)\n\
+or a located variable (AT %IX0.0). Outputs that nobody assigns are reported too.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR limit : INT; END_VAR\n\
+VAR_INPUT level : INT; END_VAR\n\
+VAR_OUTPUT alarm : BOOL; END_VAR\n\
+alarm := level > limit;\n\
+END_PROGRAM\n\
+```\n";
+    NO_RESULT "W0353" Warning "a function never assigns its result" "\
+A function gives its result by an assignment to its own name; without one it always gives the initial value of its type.\n\
+\n\
+```st\n\
+FUNCTION Twice : INT\n\
+VAR_INPUT x : INT; END_VAR\n\
+VAR_OUTPUT y : INT; END_VAR\n\
+y := 2 * x;\n\
+END_FUNCTION\n\
+```\n";
+    UNREACHABLE "W0354" Warning "a statement is never reached" "\
+What stands before it always goes elsewhere: RETURN, EXIT, CONTINUE, a jump, or a loop that never ends.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR_OUTPUT a : INT; END_VAR\n\
+a := 1;\n\
+RETURN;\n\
+a := 2;\n\
+END_PROGRAM\n\
+```\n";
+    CALLED_TWICE "W0355" Warning "an instance is called twice in one cycle" "\
+Timers measure, counters count and edges are found between two calls of an instance. Called at two places of one way\n\
+through the body, the second call sees what the first one left.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR t : TON; END_VAR\n\
+VAR_INPUT a, b : BOOL; END_VAR\n\
+VAR_OUTPUT x, y : BOOL; END_VAR\n\
+t(IN := a, PT := T#1s, Q => x);\n\
+t(IN := b, PT := T#1s, Q => y);\n\
 END_PROGRAM\n\
 ```\n";
     // ---- E05xx: configuration and project ----

@@ -97,6 +97,8 @@ pub(crate) struct Cx<'a> {
     pub open_bounds: FxHashMap<VarId, Vec<[VarId; 2]>>,
     /// Errors that the codesys profile would not have: for the closing note of \[P1\].
     pub codesys_only: usize,
+    /// Variables that some name in a body or a constant expression means.
+    pub mentioned: std::cell::RefCell<FxHashSet<VarId>>,
     /// Names that were reported as unknown, by POU: one message each.
     reported: FxHashSet<(Option<PouId>, SmolStr)>,
 }
@@ -117,6 +119,7 @@ impl<'a> Cx<'a> {
             type_cache: FxHashMap::default(),
             open_bounds: FxHashMap::default(),
             codesys_only: 0,
+            mentioned: Default::default(),
             reported: FxHashSet::default(),
         }
     }
@@ -128,6 +131,11 @@ impl<'a> Cx<'a> {
     /// Whether something about a name is reported for the first time in a POU.
     pub fn first_report(&mut self, scope: Option<PouId>, name: &str) -> bool {
         self.reported.insert((scope, fold(name)))
+    }
+
+    /// Whether a declaration gives the variable a value.
+    pub fn has_initialiser(&self, var: VarId) -> bool {
+        self.var_slots[var].decl.is_some_and(|(_, init)| init.is_some())
     }
 
     pub fn push(&mut self, diagnostic: Diagnostic) {

@@ -21,6 +21,7 @@ pub mod defs;
 mod expr;
 pub mod init;
 mod initial;
+mod lints;
 mod literal;
 mod open_array;
 mod operators;
@@ -69,6 +70,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     body_check::check_all(&mut cx);
     cycles::recursion(&mut cx);
     references::spread_addresses(&mut cx.defs);
+    lints::run(&mut cx, diags);
     let app = config::configure(&mut cx, units, selection);
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }

@@ -32,7 +32,10 @@ impl<'a> Checker<'_, 'a> {
             && let Some(local) = self.cx.pou_slots[scope].scope.get(&key)
         {
             return match local {
-                Local::Var(var) | Local::External(var) => Found::Var(*var),
+                Local::Var(var) | Local::External(var) => {
+                    self.cx.mentioned.borrow_mut().insert(*var);
+                    Found::Var(*var)
+                }
                 Local::Action(action) => Found::Action(*action),
                 Local::Missing => Found::Reported,
             };

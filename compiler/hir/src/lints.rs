@@ -1,0 +1,267 @@
+//! What compiles but is probably not meant so: variables nobody uses or writes, results and outputs nobody assigns,
+//! statements nothing reaches, an instance that is called twice.
+//!
+//! In: checked bodies of files without errors (a mistake hides uses, so there would be warnings about nothing). The
+//! warnings that belong to one expression or statement are given where that is checked.
+
+use crate::body::*;
+use crate::cx::Cx;
+use crate::defs::*;
+use crate::types::Type;
+use crate::visit::{self, Use, Visitor};
+use plcc_diag::{Code, Diagnostic, Diagnostics, FileId, Severity, Span, codes};
+use rustc_hash::FxHashSet;
+
+/// Warns about the POUs of the user's files; `before` are the messages of the parser.
+pub(crate) fn run(cx: &mut Cx, before: &Diagnostics) {
+    let errors = before.iter().chain(cx.diags.iter()).filter(|d| d.severity() == Severity::Error);
+    let broken: FxHashSet<FileId> = errors.map(|d| d.primary.span.file).collect();
+    let uses = Uses::of(&cx.defs);
+    let mut found = Vec::new();
+    for (id, pou) in cx.defs.pous.iter_enumerated() {
+        if pou.builtin || broken.contains(&pou.span.file) {
+            continue;
+        }
+        let lint = Lint { cx, uses: &uses };
+        lint.variables(id, &mut found);
+        if let Some(body) = cx.defs.bodies.get(id) {
+            unreachable(&body.stmts, &mut found);
+            Calls { cx, out: &mut found }.list(&body.stmts, &mut Vec::new());
+        }
+    }
+    found.into_iter().for_each(|d| cx.push(d));
+}
+
+/// Which variables all bodies read and write.
+#[derive(Default)]
+struct Uses {
+    written: FxHashSet<VarId>,
+}
+
+impl Uses {
+    fn of(defs: &Defs) -> Self {
+        let mut uses = Self::default();
+        defs.bodies.iter().for_each(|body| visit::stmts(&body.stmts, &mut uses));
+        uses
+    }
+}
+
+impl Visitor for Uses {
+    fn place(&mut self, place: &Place, how: Use) {
+        if how == Use::Read {
+            return;
+        }
+        // Whatever is called, referred to or connected may be written there.
+        if let Root::Var(var) = place.root {
+            self.written.insert(var);
+        }
+    }
+
+    fn call(&mut self, call: &Call) {
+        self.written.extend(call.inputs.iter().map(|(var, _)| *var));
+    }
+}
+
+struct Lint<'c, 'a> {
+    cx: &'c Cx<'a>,
+    uses: &'c Uses,
+}
+
+impl Lint<'_, '_> {
+    fn variables(&self, pou: PouId, out: &mut Vec<Diagnostic>) {
+        for &id in &self.cx.defs.pous[pou].vars {
+            let var = &self.cx.defs.vars[id];
+            if var.is_hidden() {
+                continue;
+            }
+            if let Some(warning) = self.variable(pou, id, var) {
+                out.push(warning);
+            }
+        }
+    }
+
+    fn variable(&self, pou: PouId, id: VarId, var: &Var) -> Option<Diagnostic> {
+        let mentioned = self.cx.mentioned.borrow().contains(&id);
+        let written = self.uses.written.contains(&id);
+        let warn = |code: Code, message: String| Some(Diagnostic::new(code, var.span, message));
+        let name = &var.name;
+        match var.section {
+            Section::Local | Section::Temp if !mentioned => {
+                // An instance may be there for its outputs, which a trace or a panel reads: but nobody calls it.
+                warn(codes::UNUSED_VARIABLE, format!("`{name}` is never used"))
+                    .map(|d| d.help("remove the declaration, or write what it was meant for"))
+            }
+            Section::Local | Section::Temp if !written && self.needs_a_writer(id, var) => {
+                warn(codes::NEVER_WRITTEN, format!("`{name}` is read, but nothing ever writes it"))
+                    .map(|d| d.help("assign it, declare it CONSTANT or VAR_INPUT, or give it an address (AT %I..)"))
+            }
+            Section::Output if !written && self.needs_a_writer(id, var) && self.has_body(pou) => {
+                warn(codes::NEVER_WRITTEN, format!("nothing ever writes the output `{name}`"))
+                    .map(|d| d.help("assign it in the body, or remove it"))
+            }
+            Section::Result if !written => {
+                warn(codes::NO_RESULT, format!("the function `{name}` never assigns its result"))
+                    .map(|d| d.help(format!("assign it by the function's name: `{name} := ...;`")))
+            }
+            _ => None,
+        }
+    }
+
+    /// A POU without statements is an interface that somebody else fills.
+    fn has_body(&self, pou: PouId) -> bool {
+        self.cx.defs.bodies.get(pou).is_some_and(|body| !body.stmts.is_empty())
+    }
+
+    /// Whether a variable that nobody writes is suspicious: one with a place of its own and no value written for it.
+    fn needs_a_writer(&self, id: VarId, var: &Var) -> bool {
+        let instance = matches!(self.cx.defs.types.get(var.ty), Type::Instance(_) | Type::Error);
+        !(var.constant
+            || var.address.is_some()
+            || var.address_taken
+            || var.refers_to.is_some()
+            || instance
+            || self.cx.has_initialiser(id))
+    }
+}
+
+/// Statements behind one that never goes on.
+fn unreachable(list: &[Stmt], out: &mut Vec<Diagnostic>) {
+    for (n, stmt) in list.iter().enumerate() {
+        if let (Some(why), Some(next)) = (leaves(stmt), list.get(n + 1))
+            && !matches!(next.kind, StmtKind::Label(_))
+        {
+            out.push(
+                Diagnostic::new(codes::UNREACHABLE, next.span, "this statement is never reached")
+                    .also(stmt.span, why)
+                    .help("remove it, or make what stands before it conditional"),
+            );
+            return;
+        }
+        match &stmt.kind {
+            StmtKind::If { arms, otherwise } => {
+                arms.iter().for_each(|(_, body)| unreachable(body, out));
+                unreachable(otherwise, out);
+            }
+            StmtKind::Case { arms, otherwise, .. } => {
+                arms.iter().for_each(|arm| unreachable(&arm.body, out));
+                unreachable(otherwise, out);
+            }
+            StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
+                unreachable(body, out);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What makes control leave at a statement, whatever the conditions are.
+fn leaves(stmt: &Stmt) -> Option<&'static str> {
+    match &stmt.kind {
+        StmtKind::Return => Some("this leaves the POU"),
+        StmtKind::Exit => Some("this leaves the loop"),
+        StmtKind::Continue => Some("this goes to the next pass"),
+        StmtKind::Jump(_, None) => Some("this jumps elsewhere"),
+        StmtKind::While(cond, body) if matches!(cond.kind, ExprKind::Const(1)) && !exits(body) => {
+            Some("this loop never ends")
+        }
+        _ => None,
+    }
+}
+
+/// Whether a loop's body can leave the loop.
+fn exits(body: &[Stmt]) -> bool {
+    body.iter().any(|stmt| match &stmt.kind {
+        StmtKind::Exit | StmtKind::Return | StmtKind::Jump(..) => true,
+        StmtKind::If { arms, otherwise } => arms.iter().any(|(_, b)| exits(b)) || exits(otherwise),
+        StmtKind::Case { arms, otherwise, .. } => arms.iter().any(|a| exits(&a.body)) || exits(otherwise),
+        // An EXIT in there leaves that loop only; a RETURN is rare enough to be generous.
+        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => exits(body),
+        _ => false,
+    })
+}
+
+/// Calls of function block instances on one way through a body.
+struct Calls<'c, 'a, 'o> {
+    cx: &'c Cx<'a>,
+    out: &'o mut Vec<Diagnostic>,
+}
+
+/// An instance by its path, and where it was called.
+type Called = (String, Span);
+
+impl Calls<'_, '_, '_> {
+    fn list(&mut self, list: &[Stmt], called: &mut Vec<Called>) {
+        for stmt in list {
+            match &stmt.kind {
+                StmtKind::Call(call) => self.call(call, called),
+                StmtKind::If { arms, otherwise } => {
+                    let bodies = arms.iter().map(|(_, body)| body.as_slice()).chain([otherwise.as_slice()]);
+                    self.branches(bodies, called);
+                }
+                StmtKind::Case { arms, otherwise, .. } => {
+                    let bodies = arms.iter().map(|arm| arm.body.as_slice()).chain([otherwise.as_slice()]);
+                    self.branches(bodies, called);
+                }
+                StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
+                    self.list(body, called);
+                }
+                // A way that leaves here does not meet what follows.
+                StmtKind::Return | StmtKind::Exit | StmtKind::Continue | StmtKind::Label(_) | StmtKind::Jump(..) => {
+                    called.clear();
+                }
+                StmtKind::Assign { .. } | StmtKind::Eval(_) => {}
+            }
+        }
+    }
+
+    /// Of several branches one is taken: each starts with what was called before, and what any of them called may have
+    /// been called afterwards.
+    fn branches<'b>(&mut self, bodies: impl Iterator<Item = &'b [Stmt]>, called: &mut Vec<Called>) {
+        let before = called.clone();
+        for body in bodies {
+            let mut own = before.clone();
+            self.list(body, &mut own);
+            let new = own.into_iter().filter(|(path, _)| !before.iter().any(|(p, _)| p == path));
+            called.extend(new.collect::<Vec<_>>());
+        }
+    }
+
+    fn call(&mut self, call: &Call, called: &mut Vec<Called>) {
+        let Callee::Instance(place, _) = &call.callee else { return };
+        // `t(IN := FALSE)` resets a timer before its call proper: all values are constants.
+        let reset = !call.inputs.is_empty() && call.inputs.iter().all(|(_, e)| matches!(e.kind, ExprKind::Const(_)));
+        let Some(path) = self.path(place).filter(|_| !reset) else { return };
+        match called.iter().find(|(p, _)| *p == path) {
+            Some((_, first)) => self.out.push(
+                Diagnostic::new(
+                    codes::CALLED_TWICE,
+                    call.span,
+                    format!("the instance `{path}` is called twice in one cycle"),
+                )
+                .also(*first, "first called here")
+                .help("timers, counters and edges then see two calls per cycle; use an instance for each place"),
+            ),
+            None => called.push((path, call.span)),
+        }
+    }
+
+    /// The instance, if it is the same in every cycle: no variable index, no reference.
+    fn path(&self, place: &Place) -> Option<String> {
+        let Root::Var(var) = place.root else { return None };
+        let mut text = self.cx.defs.vars[var].name.to_string();
+        for step in &place.steps {
+            match step {
+                Step::Member(var) => text = format!("{text}.{}", self.cx.defs.vars[*var].name),
+                Step::Field(n) => text = format!("{text}.#{n}"),
+                Step::Index(indices, _) => {
+                    for index in indices {
+                        let ExprKind::Const(raw) = index.kind else { return None };
+                        text = format!("{text}[{}]", raw as i64);
+                    }
+                }
+                _ => return None,
+            }
+        }
+        Some(text)
+    }
+}
