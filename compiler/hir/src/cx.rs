@@ -95,6 +95,8 @@ pub(crate) struct Cx<'a> {
     pub type_cache: FxHashMap<*const ast::TypeExpr, Resolved>,
     /// Errors that the codesys profile would not have: for the closing note of \[P1\].
     pub codesys_only: usize,
+    /// Inputs declared R_EDGE or F_EDGE.
+    pub edges: FxHashMap<VarId, crate::edges::EdgeInput>,
     /// Names that were reported as unknown, by POU: one message each.
     reported: FxHashSet<(Option<PouId>, SmolStr)>,
 }
@@ -114,6 +116,7 @@ impl<'a> Cx<'a> {
             pou_slots: IndexVec::new(),
             type_cache: FxHashMap::default(),
             codesys_only: 0,
+            edges: FxHashMap::default(),
             reported: FxHashSet::default(),
         }
     }

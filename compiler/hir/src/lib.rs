@@ -18,6 +18,7 @@ mod consts;
 mod cx;
 mod cycles;
 pub mod defs;
+mod edges;
 mod expr;
 pub mod init;
 mod initial;
@@ -59,6 +60,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     let mut cx = cx::Cx::new(units);
     collect::collect(&mut cx, units);
     cx.resolve_all();
+    edges::check_types(&mut cx);
     cycles::containment(&mut cx);
     cx.init_all();
     body_check::check_all(&mut cx);
