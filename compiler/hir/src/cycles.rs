@@ -196,6 +196,14 @@ fn in_expr(e: &Expr, out: &mut Vec<(PouId, Span)>) {
         ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) => in_expr(inner, out),
         ExprKind::RangeCheck { value, .. } => in_expr(value, out),
         ExprKind::Call(call) => in_call(call, out),
+        ExprKind::StdCall(call) => {
+            call.en.iter().chain(call.arguments.iter().map(|(_, e)| e)).for_each(|e| in_expr(e, out));
+            call.outputs.iter().map(|(place, _)| place).chain(&call.eno).for_each(|p| in_place(p, out));
+        }
+        ExprKind::Choose { selector, choices } => {
+            in_expr(selector, out);
+            choices.iter().for_each(|e| in_expr(e, out));
+        }
         ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {}
     }
 }

@@ -28,6 +28,7 @@ mod place;
 pub mod print;
 mod resolve;
 pub mod rules;
+mod std_args;
 mod std_call;
 mod time_arithmetic;
 pub mod types;

@@ -16,6 +16,7 @@ pub mod init;
 mod path;
 mod place;
 pub mod reach;
+mod std_call;
 mod stmt;
 mod string;
 mod task;

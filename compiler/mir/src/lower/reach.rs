@@ -116,6 +116,14 @@ impl Reach {
             ExprKind::Convert(_, _, e) | ExprKind::Retype(e) | ExprKind::RangeCheck { value: e, .. } => self.expr(e),
             ExprKind::Call(call) => self.call(call),
             ExprKind::Std { args, .. } => args.iter().for_each(|e| self.expr(e)),
+            ExprKind::StdCall(call) => {
+                call.en.iter().chain(call.arguments.iter().map(|(_, e)| e)).for_each(|e| self.expr(e));
+                call.outputs.iter().map(|(place, _)| place).chain(&call.eno).for_each(|p| self.place(p, false));
+            }
+            ExprKind::Choose { selector, choices } => {
+                self.expr(selector);
+                choices.iter().for_each(|e| self.expr(e));
+            }
             ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {}
         }
     }
