@@ -310,6 +310,15 @@ again:\n\
 x := 1;\n\
 END_PROGRAM\n\
 ```\n";
+    BAD_EDGE "E0218" Error "R_EDGE or F_EDGE in the wrong place" "\
+A VAR_INPUT of type BOOL may be declared R_EDGE or F_EDGE: inside its POU it is TRUE only in the call that saw the edge. What was before must be remembered, which a FUNCTION_BLOCK or PROGRAM can and a FUNCTION cannot.\n\
+\n\
+```st\n\
+FUNCTION Count : INT\n\
+VAR_INPUT pulse : BOOL R_EDGE; END_VAR\n\
+IF pulse THEN Count := 1; END_IF;\n\
+END_FUNCTION\n\
+```\n";
     // ---- E03xx: types, expressions, calls ----
     TYPE_MISMATCH "E0301" Error "a value has the wrong type" "\
 Implicit conversions keep every value: INT to DINT, INT to REAL, BYTE to WORD. All others are written, so that a reader sees them: `REAL_TO_INT(x)`.\n\

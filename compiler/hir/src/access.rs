@@ -51,6 +51,19 @@ impl Checker<'_, '_> {
             );
             return false;
         }
+        if let Some(input) = self.edge_input_of(var) {
+            let Var { name, span, .. } = self.cx.defs.vars[input].clone();
+            self.report(
+                Diagnostic::new(
+                    codes::NOT_WRITABLE,
+                    place.span,
+                    format!("`{name}` is an edge input: inside its POU it cannot be assigned"),
+                )
+                .also(span, "declared here")
+                .help("use a variable of its own"),
+            );
+            return false;
+        }
         if v.section == Section::Input && v.owner == self.scope && !self.member_write(place) {
             self.report(
                 Diagnostic::new(codes::INPUT_WRITTEN, place.span, format!("the input `{name}` is assigned here"))
@@ -70,6 +83,11 @@ impl Checker<'_, '_> {
             );
         }
         true
+    }
+
+    /// The edge input whose pulse a variable is.
+    fn edge_input_of(&self, pulse: VarId) -> Option<VarId> {
+        self.cx.edges.iter().find(|(_, e)| e.pulse == pulse).map(|(input, _)| *input)
     }
 
     /// Whether a path leads into an instance (whose inputs anyone may write).

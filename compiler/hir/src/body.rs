@@ -118,6 +118,43 @@ pub struct Expr {
     pub span: Span,
 }
 
+impl Expr {
+    /// Whether evaluating it may change variables: it calls a user's POU, or stores an output or ENO.
+    pub fn calls(&self) -> bool {
+        match &self.kind {
+            ExprKind::Call(_) => true,
+            ExprKind::Read(place) | ExprKind::RefOf(place) => place.calls(),
+            ExprKind::Op(_, _, list) | ExprKind::Std { args: list, .. } => list.iter().any(Expr::calls),
+            ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => a.calls() || b.calls(),
+            ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) | ExprKind::RangeCheck { value: inner, .. } => {
+                inner.calls()
+            }
+            ExprKind::StdCall(call) => {
+                call.eno.is_some()
+                    || !call.outputs.is_empty()
+                    || call.en.iter().chain(call.arguments.iter().map(|(_, e)| e)).any(Expr::calls)
+            }
+            ExprKind::Choose { selector, choices } => selector.calls() || choices.iter().any(Expr::calls),
+            ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {
+                false
+            }
+        }
+    }
+}
+
+impl Place {
+    /// As [`Expr::calls`], for its indices and references.
+    pub fn calls(&self) -> bool {
+        let root = matches!(&self.root, Root::Deref(reference) if reference.calls());
+        root || self.steps.iter().any(|step| match step {
+            Step::Index(indices, _) => indices.iter().any(Expr::calls),
+            // The bounds are variables.
+            Step::OpenIndex(indices, _) => indices.iter().any(|i| i.value.calls()),
+            Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
+        })
+    }
+}
+
 /// The forms of an expression. Conversions are explicit: operands have exactly the type that an operation takes.
 #[derive(Debug, Clone)]
 pub enum ExprKind {
@@ -160,6 +197,16 @@ pub enum ExprKind {
         elem: Elem,
         /// Values of all parameters, in order.
         args: Vec<Expr>,
+    },
+    /// A standard function with EN, ENO or outputs.
+    StdCall(Box<StdCall>),
+    /// Choice number `selector` (a LINT, from 0), the last one if it is outside; all choices are evaluated. For what fits no
+    /// formula: aggregates (strings may differ in capacity) and references.
+    Choose {
+        /// Which.
+        selector: Box<Expr>,
+        /// At least one.
+        choices: Vec<Expr>,
     },
     /// `REF(x)`, `ADR(x)`: an I32 region offset.
     RefOf(Place),
@@ -242,6 +289,22 @@ pub struct Call {
     pub eno: Option<Place>,
     /// Where.
     pub span: Span,
+}
+
+/// A call of a standard function that is more than a value. The arguments are evaluated into temporaries first, so that only
+/// what the function itself does stands in `value` and `outputs`: that is what ENO catches (semantics.md \[S6\] \[E4\]).
+#[derive(Debug, Clone)]
+pub struct StdCall {
+    /// EN: FALSE skips the rest; the value is its type's default, outputs keep theirs.
+    pub en: Option<Expr>,
+    /// Arguments, in written order.
+    pub arguments: Vec<(TempId, Expr)>,
+    /// The result over the temporaries; `None` if the function gives none.
+    pub value: Option<Expr>,
+    /// What is stored after the call: values over the temporaries, of the types of their targets.
+    pub outputs: Vec<(Place, Expr)>,
+    /// ENO: catches faults of the function.
+    pub eno: Option<Place>,
 }
 
 /// What is called.

@@ -311,12 +311,9 @@ impl<'a> Checker<'_, 'a> {
                 }
                 ast::ArgKind::Output { negated, name, target } => {
                     if self.en_eno(pou, name) == Some(false) {
-                        if let Some(target) = target.as_ref().and_then(|t| self.place(t)) {
-                            if self.elem_of(target.ty) == Some(Elem::Bool) && self.check_writable(&target) {
-                                out.eno = Some(target);
-                            } else {
-                                fine = false;
-                            }
+                        match self.eno_target(*negated, name, target.as_ref()) {
+                            Some(target) => out.eno = target,
+                            None => fine = false,
                         }
                         continue;
                     }
@@ -361,7 +358,30 @@ impl<'a> Checker<'_, 'a> {
         }
     }
 
-    fn wrong_direction(&mut self, name: &ast::Name, what: &str, is_output: bool) {
+    /// The variable behind `ENO =>`, if one is written; `None` after a mistake.
+    pub fn eno_target(
+        &mut self,
+        negated: bool,
+        name: &ast::Name,
+        target: Option<&'a ast::Expr>,
+    ) -> Option<Option<Place>> {
+        let Some(target) = target else { return Some(None) };
+        let place = self.place(target)?;
+        if negated {
+            self.not_yet(name.span, "NOT before ENO");
+            return None;
+        }
+        if self.elem_of(place.ty) != Some(Elem::Bool) {
+            let message = format!("ENO is BOOL, this variable is {}", self.cx.type_name(place.ty));
+            self.report(
+                Diagnostic::new(codes::TYPE_MISMATCH, target.span, message).help("fetch it with a BOOL variable"),
+            );
+            return None;
+        }
+        self.check_writable(&place).then_some(Some(place))
+    }
+
+    pub fn wrong_direction(&mut self, name: &ast::Name, what: &str, is_output: bool) {
         let (message, help) = if is_output {
             (format!("`{what}` is an output"), format!("fetch it with `{what} => variable`"))
         } else {

@@ -338,13 +338,10 @@ fn declare_var<'a>(
         );
         cx.defs.vars[var].address = None;
     }
-    if let Some((_, span)) = decl.edge {
-        cx.push(
-            Diagnostic::new(codes::NOT_YET, span, "R_EDGE and F_EDGE are not implemented yet")
-                .help("use an instance of R_TRIG or F_TRIG"),
-        );
-    }
     cx.defs.pous[id].vars.push(var);
+    if let Some((edge, span)) = decl.edge {
+        crate::edges::declare(cx, var, edge, span);
+    }
     cx.pou_slots[id].scope.insert(key, Local::Var(var));
 }
 

@@ -99,6 +99,8 @@ pub(crate) struct Cx<'a> {
     pub codesys_only: usize,
     /// Variables that some name in a body or a constant expression means.
     pub mentioned: std::cell::RefCell<FxHashSet<VarId>>,
+    /// Inputs declared R_EDGE or F_EDGE.
+    pub edges: FxHashMap<VarId, crate::edges::EdgeInput>,
     /// Names that were reported as unknown, by POU: one message each.
     reported: FxHashSet<(Option<PouId>, SmolStr)>,
 }
@@ -120,6 +122,7 @@ impl<'a> Cx<'a> {
             open_bounds: FxHashMap::default(),
             codesys_only: 0,
             mentioned: Default::default(),
+            edges: FxHashMap::default(),
             reported: FxHashSet::default(),
         }
     }

@@ -123,6 +123,8 @@ impl<'a> Checker<'_, 'a> {
                 if self.cx.defs.vars[var].section == Section::Global {
                     self.note_global(var, name);
                 }
+                // Inside its POU the name of an edge input means the pulse.
+                let var = self.cx.edges.get(&var).map_or(var, |e| e.pulse);
                 let ty = self.cx.defs.vars[var].ty;
                 if ty == Types::ERROR {
                     return None;

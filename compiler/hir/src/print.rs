@@ -226,6 +226,10 @@ impl Printer<'_> {
             ExprKind::RangeCheck { value, low, high, .. } => format!("CHECK({}, {low}..{high})", self.expr(value)),
             ExprKind::Call(call) => self.call(call),
             ExprKind::Std { func, elem, args } => format!("{}<{}>({})", func.name, elem.name(), self.args(args)),
+            ExprKind::StdCall(call) => self.std_call(call),
+            ExprKind::Choose { selector, choices } => {
+                format!("CHOOSE({}: {})", self.expr(selector), self.args(choices))
+            }
             ExprKind::RefOf(place) => format!("REF({})", self.place(place)),
             ExprKind::Temp(temp) => format!("t{}", temp.index()),
             ExprKind::Error => "?".into(),
@@ -270,6 +274,18 @@ impl Printer<'_> {
         }));
         parts.extend(call.eno.iter().map(|p| format!("ENO => {}", self.place(p))));
         format!("{callee}({})", parts.join(", "))
+    }
+
+    /// `[EN := e; t0 := a; t1 := b] DIV_INT(t0, t1) [ENO => ok]`.
+    fn std_call(&self, call: &StdCall) -> String {
+        let mut before: Vec<String> = Vec::new();
+        before.extend(call.en.iter().map(|e| format!("EN := {}", self.expr(e))));
+        before.extend(call.arguments.iter().map(|(t, e)| format!("t{} := {}", t.index(), self.expr(e))));
+        let mut after: Vec<String> = Vec::new();
+        after.extend(call.outputs.iter().map(|(p, e)| format!("{} => {}", self.expr(e), self.place(p))));
+        after.extend(call.eno.iter().map(|p| format!("ENO => {}", self.place(p))));
+        let value = call.value.as_ref().map(|v| self.expr(v)).unwrap_or_default();
+        format!("[{}] {value} [{}]", before.join("; "), after.join("; "))
     }
 
     fn place(&self, place: &Place) -> String {

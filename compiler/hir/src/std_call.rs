@@ -1,7 +1,6 @@
 //! Calls of standard functions: overloading by the row of the function table (semantics.md \[T3\] \[N1\] \[S4\]).
 
 use crate::body::*;
-use crate::cx::similar;
 use crate::expr::*;
 use crate::rules::{self, Implicit};
 use crate::types::{Type as Ty, TypeId, Types};
@@ -32,9 +31,6 @@ fn binary_of(op: Operator) -> Option<BinaryOp> {
     })
 }
 
-/// Arguments by position of the parameter.
-type Placed<'a> = Vec<Option<&'a ast::Expr>>;
-
 impl<'a> Checker<'_, 'a> {
     pub fn standard_call(
         &mut self,
@@ -51,7 +47,7 @@ impl<'a> Checker<'_, 'a> {
             }
             return self.not_yet(call.callee.span, &format!("the standard function {}", func.name));
         }
-        let Some(args) = self.place_arguments(func, call) else { return Operand::Error };
+        let Some(placed) = self.place_arguments(func, call) else { return Operand::Error };
         // What the place asks for reaches only arguments of the type variable.
         let var_want = match (func.bound, func.result) {
             (Some(elem), _) => Some(Types::elem(elem)),
@@ -59,8 +55,8 @@ impl<'a> Checker<'_, 'a> {
             (None, Type::Fixed(elem)) if matches!(func.meaning, Meaning::Formula(_)) && elem != Elem::Bool => want,
             _ => None,
         };
-        let mut operands = Vec::with_capacity(args.len());
-        for (n, e) in args.iter().enumerate() {
+        let mut operands = Vec::with_capacity(placed.args.len());
+        for (n, e) in placed.args.iter().enumerate() {
             let Some(e) = e else { return Operand::Error };
             let place = match func.param_type(n) {
                 Some(Type::Fixed(elem)) => Some(Types::elem(elem)),
@@ -72,91 +68,13 @@ impl<'a> Checker<'_, 'a> {
         if operands.iter().any(|(o, _)| matches!(o, Operand::Error)) {
             return Operand::Error;
         }
-        self.apply(func, operands, span, want)
-    }
-
-    /// Brings arguments into the order of the parameters.
-    fn place_arguments(&mut self, func: &'static StdFn, call: &'a ast::Call) -> Option<Placed<'a>> {
-        let mut args: Placed = Vec::new();
-        let mut fine = true;
-        let positional = call.args.iter().any(|a| matches!(a.kind, ast::ArgKind::Positional(_)));
-        let named = call.args.iter().find(|a| !matches!(a.kind, ast::ArgKind::Positional(_)));
-        if let (true, Some(named)) = (positional, named) {
-            self.report(
-                Diagnostic::new(codes::MIXED_ARGUMENTS, named.span, "arguments with and without names are mixed")
-                    .help("write all arguments as `name := value`, or none"),
-            );
-            return None;
+        // Named arguments may stand in another order than the parameters: then calls in them are made as written.
+        let reordered = !operands.is_sorted_by_key(|(_, at)| at.start)
+            && operands.iter().any(|(o, _)| matches!(o, Operand::Value { expr, .. } if expr.calls()));
+        if placed.en.is_none() && placed.eno.is_none() && func.outputs.is_empty() && !reordered {
+            return self.apply(func, operands, span, want);
         }
-        for (n, arg) in call.args.iter().enumerate() {
-            match &arg.kind {
-                ast::ArgKind::Positional(e) => {
-                    if func.param_type(n).is_none() {
-                        let message = format!("{} arguments for {}", call.args.len(), func.name);
-                        self.report(
-                            Diagnostic::new(codes::TOO_MANY_ARGUMENTS, arg.span, message)
-                                .help(format!("it is {}", func.signature())),
-                        );
-                        return None;
-                    }
-                    args.push(Some(e));
-                }
-                ast::ArgKind::Input(name, value) => {
-                    if name.text.eq_ignore_ascii_case("EN") {
-                        self.not_yet(name.span, "EN of a standard function");
-                        return None;
-                    }
-                    let Some(index) = func.param_index(&name.text) else {
-                        let names: Vec<String> = (0..func.min_args()).map(|n| func.param_name(n)).collect();
-                        let hint = similar(&name.text, names.iter().map(String::as_str));
-                        let message = format!("{} has no parameter `{}`", func.name, name.text);
-                        self.report(Diagnostic::new(codes::UNKNOWN_PARAMETER, name.span, message).help(match hint {
-                            Some(near) => format!("did you mean `{near}`?"),
-                            None => format!("it is {}", func.signature()),
-                        }));
-                        fine = false;
-                        continue;
-                    };
-                    if args.len() <= index {
-                        args.resize(index + 1, None);
-                    }
-                    if args[index].is_some() {
-                        self.report(
-                            Diagnostic::new(
-                                codes::DUPLICATE_ARGUMENT,
-                                name.span,
-                                format!("parameter `{}` is given twice", name.text),
-                            )
-                            .help("remove one of them"),
-                        );
-                        fine = false;
-                        continue;
-                    }
-                    args[index] = value.as_ref();
-                }
-                ast::ArgKind::Output { name, .. } => {
-                    if name.text.eq_ignore_ascii_case("ENO") {
-                        self.not_yet(name.span, "ENO of a standard function");
-                        return None;
-                    }
-                    let message = format!("{} has no output `{}`", func.name, name.text);
-                    self.report(Diagnostic::new(codes::UNKNOWN_PARAMETER, name.span, message));
-                    fine = false;
-                }
-            }
-        }
-        if fine {
-            let missing = (0..func.min_args().max(args.len())).find(|n| args.get(*n).is_none_or(|a| a.is_none()));
-            if let Some(n) = missing {
-                let message = format!("argument `{}` of {} is missing", func.param_name(n), func.name);
-                self.report(
-                    Diagnostic::new(codes::MISSING_ARGUMENT, call.parens, message)
-                        .help(format!("it is {}", func.signature())),
-                );
-                return None;
-            }
-        }
-        fine.then_some(args)
+        self.call_in_steps(func, placed, operands, span, want)
     }
 
     /// The meaning of the row on checked operands. Also how IL applies a function to its current result.
@@ -195,8 +113,9 @@ impl<'a> Checker<'_, 'a> {
             Meaning::Convert(to) => self.conversion(func, to, operands.remove(0), span),
             Meaning::Shift(op) => self.shift(func, op, operands, span, want),
             Meaning::Integral(_) => self.integral(func, operands.remove(0), span, want),
-            Meaning::Formula(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
-            Meaning::NotYet => Operand::Error,
+            Meaning::Formula(_) | Meaning::Choose(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
+            // A function without result goes another way.
+            Meaning::Outputs | Meaning::NotYet => Operand::Error,
         }
     }
 
@@ -424,7 +343,7 @@ impl<'a> Checker<'_, 'a> {
         };
         let Some(var) = var else { return Operand::Error };
         let Some(elem) = self.elem_of(var) else {
-            return self.not_yet(span, &format!("{} of {}", func.name, self.cx.type_name(var)));
+            return self.choose(func, operands, var, span);
         };
         let mut args = Vec::with_capacity(operands.len());
         for (n, (operand, at)) in operands.into_iter().enumerate() {
@@ -446,6 +365,26 @@ impl<'a> Checker<'_, 'a> {
             _ => var,
         };
         Operand::value(ExprKind::Std { func, elem, args }, ty, span)
+    }
+
+    /// SEL and MUX of what fits no register of the operator table: structures, arrays, references.
+    fn choose(&mut self, func: &StdFn, mut operands: Vec<(Operand, Span)>, var: TypeId, span: Span) -> Operand {
+        let (selector, at) = operands.remove(0);
+        let selector = match func.param_type(0) {
+            Some(Type::Fixed(elem)) => {
+                let truth = self.coerce(selector, at, Types::elem(elem));
+                self.with_elem(truth, Elem::Lint, at)
+            }
+            _ => match self.integer_argument(func, selector, at) {
+                Some(number) => number,
+                None => return Operand::Error,
+            },
+        };
+        let choices: Vec<Expr> = operands.into_iter().map(|(o, at)| self.coerce(o, at, var)).collect();
+        if selector.ty == Types::ERROR || choices.iter().any(|c| c.ty == Types::ERROR) {
+            return Operand::Error;
+        }
+        Operand::value(ExprKind::Choose { selector: Box::new(selector), choices }, var, span)
     }
 
     /// What the type variable stands for: the common type of the typed arguments, else what the place asks for.
@@ -471,6 +410,10 @@ impl<'a> Checker<'_, 'a> {
             common = match common {
                 None => Some(ty),
                 Some(before) if before == ty => Some(before),
+                // Aggregates and references: the others are assigned to the type of the first.
+                Some(before) if self.chooses(func, before) && self.chooses(func, ty) => {
+                    Some(if *self.cx.defs.types.get(before) == Ty::Null { ty } else { before })
+                }
                 Some(before) => {
                     let plain = |c: &Self, t| match c.cx.defs.types.get(t) {
                         Ty::Elem(e) | Ty::Subrange { base: e, .. } => Some(*e),
@@ -556,14 +499,21 @@ impl<'a> Checker<'_, 'a> {
         generic.contains(elem)
     }
 
-    /// SEL and MUX of strings, structures and so on.
+    /// Whether SEL and MUX may choose between values of a type that is not elementary.
+    fn chooses(&self, func: &StdFn, ty: TypeId) -> bool {
+        matches!(func.meaning, Meaning::Choose(_))
+            && matches!(self.cx.defs.types.get(ty), Ty::Struct(_) | Ty::Array { .. } | Ty::Ref { .. } | Ty::Null)
+    }
+
+    /// The type variable of SEL and MUX as a structure, array and so on.
     fn var_of_other_type(&mut self, func: &StdFn, ty: TypeId, vars: &[&(Operand, Span)], span: Span) -> Option<TypeId> {
         if ty == Types::ERROR {
             return None;
         }
-        if func.generic == Generic::Any
-            || matches!(self.cx.defs.types.get(ty), Ty::String { .. } | Ty::AnyString { .. })
-        {
+        if self.chooses(func, ty) {
+            return Some(ty);
+        }
+        if matches!(self.cx.defs.types.get(ty), Ty::String { .. } | Ty::AnyString { .. } | Ty::AnyArray { .. }) {
             let what = format!("{} of {}", func.name, self.cx.type_name(ty));
             self.not_yet(span, &what);
             return None;

@@ -90,6 +90,15 @@ pub fn expr(e: &Expr, v: &mut impl Visitor) {
             expr(inner, v);
         }
         ExprKind::Call(inner) => call(inner, v),
+        ExprKind::StdCall(inner) => {
+            inner.en.iter().chain(inner.arguments.iter().map(|(_, e)| e)).for_each(|e| expr(e, v));
+            inner.value.iter().chain(inner.outputs.iter().map(|(_, e)| e)).for_each(|e| expr(e, v));
+            inner.outputs.iter().map(|(p, _)| p).chain(&inner.eno).for_each(|p| place(p, Use::Written, v));
+        }
+        ExprKind::Choose { selector, choices } => {
+            expr(selector, v);
+            choices.iter().for_each(|e| expr(e, v));
+        }
         ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => {}
     }
 }

@@ -38,6 +38,8 @@ pub struct Builder {
     source: SourceId,
     source_used: bool,
     checks_division: bool,
+    /// Where failed checks go instead of faulting.
+    catch: Option<BlockId>,
 }
 
 impl Builder {
@@ -54,6 +56,7 @@ impl Builder {
             source: SourceId::from_raw(0),
             source_used: false,
             checks_division: true,
+            catch: None,
         };
         let entry = builder.block();
         builder.params = params.iter().map(|r| builder.block_param(entry, *r)).collect();
@@ -74,6 +77,11 @@ impl Builder {
     /// Whether rows check divisors and shift counts (`--checks`); they do unless told otherwise.
     pub fn set_checks_division(&mut self, on: bool) {
         self.checks_division = on;
+    }
+
+    /// Where checks that fail go from now on, a block without parameters; `None`: they fault. Gives what was set before.
+    pub fn set_catch(&mut self, catch: Option<BlockId>) -> Option<BlockId> {
+        std::mem::replace(&mut self.catch, catch)
     }
 
     /// Where the checks, calls and polls that follow come from.
@@ -312,8 +320,22 @@ impl Builder {
         for operand in operands {
             self.expect(*operand, Repr::I64);
         }
-        let source = self.source();
-        self.push(Inst::Check { cond, fault, operands: operands.to_vec(), source });
+        let Some(catch) = self.catch else {
+            let source = self.source();
+            return self.push(Inst::Check { cond, fault, operands: operands.to_vec(), source });
+        };
+        let ok = match cond {
+            Cond::True(ok) => ok,
+            Cond::Within { value, low, high } => {
+                let (low, high) = (self.number(Repr::I64, low as u64), self.number(Repr::I64, high as u64));
+                let above = self.op(PrimOp::LeS, Repr::I64, &[low, value]);
+                let below = self.op(PrimOp::LeS, Repr::I64, &[value, high]);
+                self.op(PrimOp::And, Repr::I8, &[above, below])
+            }
+        };
+        let next = self.block();
+        self.branch(ok, next, catch);
+        self.switch_to(next);
     }
 
     /// Looks at the watchdog.

@@ -29,6 +29,8 @@ pub struct StdFn {
     pub params: Vec<Param>,
     /// Further parameters of the type variable: `IN1, IN2 ...` numbered from `first`.
     pub variadic: Option<Variadic>,
+    /// What it gives besides its result, fetched with `=>`.
+    pub outputs: Vec<Output>,
     /// What the type variable may stand for.
     pub generic: Generic,
     /// The type variable's value in typed names (`ADD_INT`).
@@ -57,6 +59,17 @@ pub struct Variadic {
     pub min: usize,
 }
 
+/// An output of a function: an integer that any integer variable takes whose type holds all its values.
+#[derive(Debug, Clone, Copy)]
+pub struct Output {
+    /// Its formal name.
+    pub name: &'static str,
+    /// Least and greatest value.
+    pub range: (i64, i64),
+    /// Its value, a LINT, over the values of all arguments.
+    formula: Formula,
+}
+
 /// The type of a parameter or result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Type {
@@ -68,6 +81,8 @@ pub enum Type {
     Integer,
     /// An integer type that the place of the call asks for, DINT where nothing does (`TRUNC`).
     IntegerOfPlace,
+    /// No result: everything is in the outputs.
+    Nothing,
 }
 
 /// What a function means.
@@ -85,6 +100,10 @@ pub enum Meaning {
     Integral(PrimOp),
     /// The argument itself.
     Move,
+    /// The argument whose number (from 0) the first one gives. The formula is for elementary types.
+    Choose(Formula),
+    /// Nothing but outputs.
+    Outputs,
     /// A formula over the values of all arguments; the element is what the type variable stands for.
     Formula(Formula),
     /// The place is laid, the body is not built.
@@ -120,7 +139,9 @@ impl StdFn {
     /// Appends the formula of the row, if it is one.
     pub fn emit(&self, elem: Elem, args: &[Val], e: &mut dyn Emit) -> Option<Val> {
         match self.meaning {
-            Meaning::Formula(formula) | Meaning::Compare(_, formula) => formula(elem, args, e),
+            Meaning::Formula(formula) | Meaning::Choose(formula) | Meaning::Compare(_, formula) => {
+                formula(elem, args, e)
+            }
             _ => None,
         }
     }
@@ -145,6 +166,16 @@ impl StdFn {
             .then(|| self.params.len() + number - variadic.first)
     }
 
+    /// The output with this name (any case).
+    pub fn output(&self, name: &str) -> Option<&Output> {
+        self.outputs.iter().find(|o| o.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The row that computes an output from the arguments (not callable by name).
+    pub fn output_row(&self, output: &Output) -> Option<&'static StdFn> {
+        table().get(&format!("${}.{}", self.name, output.name))
+    }
+
     /// The type of argument `n`.
     pub fn param_type(&self, n: usize) -> Option<Type> {
         self.params.get(n).map(|p| p.ty).or(self.variadic.map(|_| Type::Var))
@@ -163,6 +194,7 @@ impl StdFn {
             (Type::Fixed(elem), _) => elem.name().to_string(),
             (Type::Integer, _) => "ANY_INT".into(),
             (Type::IntegerOfPlace, _) => "ANY_INT".into(),
+            (Type::Nothing, _) => String::new(),
         };
         let mut params: Vec<String> = self.params.iter().map(|p| format!("{} : {}", p.name, text(p.ty))).collect();
         if let Some(v) = self.variadic {
@@ -170,7 +202,9 @@ impl StdFn {
             params.extend((v.first..v.first + v.min).map(|n| format!("IN{n} : {var}")));
             params.push("...".into());
         }
-        format!("{}({}) : {}", self.name, params.join(", "), text(self.result))
+        params.extend(self.outputs.iter().map(|o| format!("{} => ANY_INT", o.name)));
+        let call = format!("{}({})", self.name, params.join(", "));
+        if self.result == Type::Nothing { call } else { format!("{call} : {}", text(self.result)) }
     }
 }
 
@@ -189,6 +223,7 @@ fn row(
         doc,
         params: params.iter().map(|(name, ty)| Param { name, ty: *ty }).collect(),
         variadic: None,
+        outputs: Vec::new(),
         generic,
         bound: None,
         result: Type::Var,
@@ -227,6 +262,12 @@ fn table() -> &'static HashMap<String, StdFn> {
             table.insert(row.name.clone(), row);
         }
         for row in time::rows().into_iter().chain(convert::rows()).chain(pending::rows()) {
+            for output in &row.outputs {
+                let name = format!("${}.{}", row.name, output.name);
+                let meaning = Meaning::Formula(output.formula);
+                let result = Type::Fixed(Elem::Lint);
+                table.insert(name.clone(), StdFn { name, meaning, result, outputs: Vec::new(), ..row.clone() });
+            }
             table.insert(row.name.clone(), row);
         }
         table

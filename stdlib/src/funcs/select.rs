@@ -34,7 +34,7 @@ pub(super) fn rows() -> Vec<StdFn> {
             clause,
             Any,
             &[("G", bool), ("IN0", Var), ("IN1", Var)],
-            Meaning::Formula(|t, args, e| Some(e.prim(PrimOp::Select, t.repr(), &[args[0], args[2], args[1]]))),
+            Meaning::Choose(|t, args, e| Some(e.prim(PrimOp::Select, t.repr(), &[args[0], args[2], args[1]]))),
             "IN0 if G is FALSE, IN1 if it is TRUE.",
         ),
         row(
@@ -64,7 +64,7 @@ pub(super) fn rows() -> Vec<StdFn> {
             clause,
             Any,
             &[("K", Integer)],
-            Meaning::Formula(mux),
+            Meaning::Choose(mux),
             "Input number K, from 0; the last one if K is outside.",
         )
         .extensible(0, 2),

@@ -12,7 +12,11 @@ use plcc_syntax::ast;
 pub(crate) fn check_all(cx: &mut Cx) {
     for id in cx.defs.pous.indices() {
         let body = match cx.pou_slots[id].body {
-            Some(body) => check(cx, id, body),
+            Some(body) => {
+                let mut checked = check(cx, id, body);
+                checked.stmts.splice(..0, crate::edges::triggers(cx, id));
+                checked
+            }
             None => Body::default(),
         };
         cx.defs.bodies.push(body);

@@ -2,7 +2,6 @@
 //!
 //! Order: EN, the instance, the arguments as they are written, then all stores, the call, the outputs, ENO.
 
-use super::expr::{calls, place_calls};
 use super::func::{FuncLower, parameters};
 use super::place::{Access, Purpose};
 use crate::build::Builder;
@@ -32,8 +31,8 @@ impl Written<'_> {
 
     fn calls(&self) -> bool {
         match self {
-            Written::Input(_, e) => calls(e),
-            Written::InOut(_, p) => place_calls(p),
+            Written::Input(_, e) => e.calls(),
+            Written::InOut(_, p) => p.calls(),
         }
     }
 }
@@ -251,7 +250,7 @@ impl FuncLower<'_, '_> {
             let from = self.parameter(target, result);
             self.copy_value(to.clone(), from.ty, from.place, from.ty);
         }
-        let keep = call.outputs.iter().any(|o| place_calls(&o.target));
+        let keep = call.outputs.iter().any(|o| o.target.calls());
         let mut fetched = Vec::with_capacity(call.outputs.len());
         for output in &call.outputs {
             let from = match &target.instance {

@@ -5,8 +5,7 @@ use super::place::Purpose;
 use crate::ir::{Place, ValueId};
 use plcc_diag::bug;
 use plcc_hir::TypeId;
-use plcc_hir::body::{Expr, ExprKind, Step};
-use plcc_hir::body::{Place as HirPlace, Root};
+use plcc_hir::body::{Expr, ExprKind};
 use plcc_hir::elem_of;
 use plcc_hir::shape::repr;
 use plcc_stdlib::convert::convert;
@@ -61,6 +60,11 @@ impl FuncLower<'_, '_> {
                     None => bug!("the standard function {} has no formula", func.name),
                 }
             }
+            ExprKind::StdCall(call) => match self.std_call(call, expr.ty, None) {
+                Some(value) => value,
+                None => bug!("the scalar result of a standard function without one"),
+            },
+            ExprKind::Choose { selector, choices } => self.choose_value(selector, choices, expr.ty),
             ExprKind::RefOf(place) => self.address(place, Purpose::Address),
             ExprKind::Temp(temp) => {
                 let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
@@ -132,6 +136,16 @@ impl FuncLower<'_, '_> {
                 self.call(call, Some(temp.clone()));
                 temp
             }
+            ExprKind::StdCall(call) => {
+                let temp = self.new_temp(expr.ty);
+                self.std_call(call, expr.ty, Some(temp.clone()));
+                temp
+            }
+            ExprKind::Choose { selector, choices } => {
+                let temp = self.new_temp(expr.ty);
+                self.choose_into(selector, choices, temp.clone(), expr.ty);
+                temp
+            }
             _ => bug!("an aggregate from {:?}", expr.kind),
         }
     }
@@ -159,34 +173,12 @@ impl FuncLower<'_, '_> {
             _ if repr(self.defs, expr.ty).is_some() => {
                 self.value(expr);
             }
+            ExprKind::StdCall(call) if expr.ty == plcc_hir::Types::VOID => {
+                self.std_call(call, expr.ty, None);
+            }
             _ => {
                 self.aggregate(expr);
             }
         }
     }
-}
-
-/// Whether evaluating an expression may call a user's POU, which can change variables and uses the frame behind the own.
-pub(super) fn calls(expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Call(_) => true,
-        ExprKind::Read(place) | ExprKind::RefOf(place) => place_calls(place),
-        ExprKind::Op(_, _, list) | ExprKind::Std { args: list, .. } => list.iter().any(calls),
-        ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => calls(a) || calls(b),
-        ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) | ExprKind::RangeCheck { value: inner, .. } => {
-            calls(inner)
-        }
-        ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_) | ExprKind::Temp(_) | ExprKind::Error => false,
-    }
-}
-
-/// As [`calls`], for the indices and references of a place.
-pub(super) fn place_calls(place: &HirPlace) -> bool {
-    let root = matches!(&place.root, Root::Deref(reference) if calls(reference));
-    root || place.steps.iter().any(|step| match step {
-        Step::Index(indices, _) => indices.iter().any(calls),
-        // The bounds are variables.
-        Step::OpenIndex(indices, _) => indices.iter().any(|i| calls(&i.value)),
-        Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
-    })
 }

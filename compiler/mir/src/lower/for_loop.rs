@@ -14,7 +14,6 @@
 //!   again: poll; pass(value + step, rest - 1)       EXIT ------'
 //! ```
 
-use super::expr::calls;
 use super::func::{FuncLower, Loop};
 use super::place::{Access, constant};
 use crate::ir::ValueId;
@@ -208,19 +207,19 @@ fn constant_passes(ty: Elem, from: &Expr, to: &Expr, step: Step) -> Option<u128>
 fn body_calls(body: &[Stmt]) -> bool {
     body.iter().any(|stmt| match &stmt.kind {
         StmtKind::Call(_) => true,
-        StmtKind::Assign { target, value } => super::expr::place_calls(target) || calls(value),
-        StmtKind::Eval(value) => calls(value),
+        StmtKind::Assign { target, value } => target.calls() || value.calls(),
+        StmtKind::Eval(value) => value.calls(),
         StmtKind::If { arms, otherwise } => {
-            arms.iter().any(|(cond, body)| calls(cond) || body_calls(body)) || body_calls(otherwise)
+            arms.iter().any(|(cond, body)| cond.calls() || body_calls(body)) || body_calls(otherwise)
         }
         StmtKind::Case { selector, arms, otherwise } => {
-            calls(selector) || arms.iter().any(|arm| body_calls(&arm.body)) || body_calls(otherwise)
+            selector.calls() || arms.iter().any(|arm| body_calls(&arm.body)) || body_calls(otherwise)
         }
         StmtKind::For { from, to, by, body, .. } => {
-            calls(from) || calls(to) || by.as_ref().is_some_and(calls) || body_calls(body)
+            from.calls() || to.calls() || by.as_ref().is_some_and(Expr::calls) || body_calls(body)
         }
-        StmtKind::While(cond, body) | StmtKind::Repeat(body, cond) => calls(cond) || body_calls(body),
-        StmtKind::Jump(_, cond) => cond.as_ref().is_some_and(calls),
+        StmtKind::While(cond, body) | StmtKind::Repeat(body, cond) => cond.calls() || body_calls(body),
+        StmtKind::Jump(_, cond) => cond.as_ref().is_some_and(Expr::calls),
         StmtKind::Exit | StmtKind::Continue | StmtKind::Return | StmtKind::Label(_) => false,
     })
 }

@@ -17,6 +17,7 @@ mod path;
 mod place;
 pub mod reach;
 mod references;
+mod std_call;
 mod stmt;
 mod string;
 mod task;
