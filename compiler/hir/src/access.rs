@@ -37,6 +37,18 @@ impl Checker<'_, '_> {
                     );
                     return false;
                 }
+                Step::Member(member) if self.cx.defs.vars[*member].section == Section::InOut => {
+                    let name = self.cx.defs.vars[*member].name.clone();
+                    self.report(
+                        Diagnostic::new(
+                            codes::NOT_WRITABLE,
+                            place.span,
+                            format!("the VAR_IN_OUT `{name}` cannot be assigned from outside"),
+                        )
+                        .help("connect a variable in the call, and assign that"),
+                    );
+                    return false;
+                }
                 Step::Deref => return true,
                 _ => {}
             }

@@ -8,6 +8,7 @@ use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::{Elem, Family};
 use plcc_stdlib::literal::{self as text, LiteralError, Nul};
 use plcc_syntax::ast::{Literal, LiteralKind, Name};
+use std::borrow::Cow;
 
 impl Checker<'_, '_> {
     pub fn literal(&mut self, literal: &Literal, span: Span, want: Option<TypeId>) -> Operand {
@@ -91,6 +92,16 @@ impl Checker<'_, '_> {
         Operand::Error
     }
 
+    /// The text of a STRING in characters that it can hold: profile codesys takes `?` for others, with a warning.
+    fn latin1<'t>(&mut self, text: &'t str, span: Span) -> Cow<'t, str> {
+        let Some(other) = text.chars().find(|c| u32::from(*c) > 0xFF).filter(|_| self.codesys(span)) else {
+            return Cow::Borrowed(text);
+        };
+        let message = format!("a STRING cannot hold `{other}`, only Latin-1; `?` stands in its place");
+        self.report(Diagnostic::new(codes::LAX_CONVERSION, span, message).help("write it in \"...\", a WSTRING"));
+        Cow::Owned(text.chars().map(|c| if u32::from(c) > 0xFF { '?' } else { c }).collect())
+    }
+
     fn string(&mut self, literal: &Literal, typed: Option<TypeId>, span: Span, want: Option<TypeId>) -> Operand {
         let wide = literal.kind == LiteralKind::WString;
         let nul = if self.codesys(span) { Nul::Ends } else { Nul::Error };
@@ -101,7 +112,8 @@ impl Checker<'_, '_> {
                 Err(e) => return self.bad(&e, span),
             }
         } else {
-            match text::string(&literal.text, nul) {
+            let latin1 = self.latin1(&literal.text, span);
+            match text::string(&latin1, nul) {
                 Ok(s) => (s.iter().map(|b| u16::from(*b)).collect(), ExprKind::String(s)),
                 Err(e) => return self.bad(&e, span),
             }

@@ -226,8 +226,11 @@ impl<'a> Checker<'_, 'a> {
                     return None;
                 };
                 self.cx.var_type(var);
+                if self.cx.defs.vars[var].section == Section::InOut && !self.in_out_from_outside(pou, var, name) {
+                    return None;
+                }
                 let v = &self.cx.defs.vars[var];
-                if !matches!(v.section, Section::Input | Section::Output) {
+                if !matches!(v.section, Section::Input | Section::Output | Section::InOut) {
                     let mut d = Diagnostic::new(
                         codes::INNER_VARIABLE,
                         name.span,
@@ -336,6 +339,25 @@ impl<'a> Checker<'_, 'a> {
         base.ty = elem;
         base.span = span;
         (elem != Types::ERROR).then_some(base)
+    }
+
+    /// `fb.x` of a VAR_IN_OUT: the variable that the last call connected. Outside of a call it stands for nothing in the
+    /// standard; existing libraries read it, so profile codesys follows it (NULL before the first call).
+    fn in_out_from_outside(&mut self, pou: PouId, var: VarId, name: &ast::Name) -> bool {
+        let (declared, block) = (self.cx.defs.vars[var].span, self.cx.defs.pous[pou].name.clone());
+        let strict = Diagnostic::new(
+            codes::INNER_VARIABLE,
+            name.span,
+            format!("`{}` is a VAR_IN_OUT of `{block}`, it exists only during a call", name.text),
+        )
+        .also(declared, "declared here")
+        .help("use the variable that the call connected");
+        if !self.codesys_only(name.span, codes::LAX_CONVERSION, strict) {
+            return false;
+        }
+        // What was connected stays reachable: it lies where references may point.
+        self.cx.defs.vars[var].address_taken = true;
+        true
     }
 
     /// A subscript as LINT.

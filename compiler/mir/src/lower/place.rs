@@ -176,10 +176,12 @@ impl FuncLower<'_, '_> {
             }
             Step::Member(id) => {
                 if self.defs.vars[*id].section == plcc_hir::Section::InOut {
-                    // The reference is read here, so this is an access of its own.
+                    // From outside of the call: the reference of the last one, NULL before the first.
                     let mut slot = self.member_slot(access, *id);
                     self.check_reference(&mut slot, place, Repr::I32.bytes());
-                    *access = self.follow_in_out(slot, *id);
+                    let reference = self.b.load(Repr::I32, slot.place, false);
+                    let name = path::of_place(self.defs, place, n + 1);
+                    *access = self.follow(reference, slot.ty, name, place);
                 } else {
                     *access = self.member(access, *id);
                 }
