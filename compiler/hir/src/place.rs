@@ -1,6 +1,7 @@
 //! Names and access paths to places in memory, and who may touch what (semantics.md \[L3\] \[S5\]).
 
 use crate::body::*;
+use crate::collect::charts;
 use crate::cx::*;
 use crate::defs::*;
 use crate::expr::*;
