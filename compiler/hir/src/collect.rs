@@ -96,10 +96,12 @@ fn declare_pou<'a>(cx: &mut Cx<'a>, pou: &'a ast::Pou, unit: &Unit<'a>) -> PouId
     let key = fold(&pou.name.text);
     let id = new_pou(cx, &pou.name, kind, unit.builtin, Some(&pou.body), pou.span);
     charts::read_options(cx, id, pou, unit);
-    if unit.builtin && plcc_stdlib::blocks::is_internal(&key) {
-        // No name that a user can write.
+    if unit.builtin {
+        // A name that no user can hide, and for some blocks the only one.
         cx.pous.insert(internal_name(&key), id);
-        return id;
+        if plcc_stdlib::blocks::is_internal(&key) {
+            return id;
+        }
     }
     match cx.pous.get(&key).copied() {
         Some(first) if !cx.defs.pous[first].builtin => {
@@ -136,7 +138,7 @@ fn declare_pou<'a>(cx: &mut Cx<'a>, pou: &'a ast::Pou, unit: &Unit<'a>) -> PouId
     id
 }
 
-/// The key of a block that only the compiler names.
+/// The key of a block that is part of plcc, which users can neither name nor hide.
 pub(crate) fn internal_name(name: &str) -> SmolStr {
     format!("${name}").into()
 }

@@ -86,6 +86,8 @@ pub(crate) struct Cx<'a> {
     pub defs: Defs,
     pub diags: Diagnostics,
     pub files: FxHashMap<FileId, Profile>,
+    /// Files that are part of plcc: their names mean what plcc declares, whatever the user declares.
+    pub builtin_files: FxHashSet<FileId>,
     pub globals: FxHashMap<SmolStr, VarId>,
     pub pous: FxHashMap<SmolStr, PouId>,
     pub types: FxHashMap<SmolStr, usize>,
@@ -118,6 +120,7 @@ impl<'a> Cx<'a> {
             defs: Defs::default(),
             diags: Diagnostics::new(),
             files: units.iter().map(|u| (u.file, u.profile)).collect(),
+            builtin_files: units.iter().filter(|u| u.builtin).map(|u| u.file).collect(),
             globals: FxHashMap::default(),
             pous: FxHashMap::default(),
             types: FxHashMap::default(),

@@ -60,7 +60,8 @@ impl Blocks<'_, '_> {
             return false;
         }
         match self.peek(1).kind {
-            Tok::Id => true,
+            // TO: the grammar takes it, a missing FROM is reported with the steps.
+            Tok::Id | Tok::To => true,
             Tok::LParen => self.is(2, "PRIORITY") && self.peek(3).kind == Tok::Assign,
             _ => false,
         }

@@ -155,7 +155,7 @@ impl<'b, 'c, 'a> Resolver<'b, 'c, 'a> {
         let Some(name) = &a.qualifier else { return Some(Qualifier::N) };
         let found = Qualifier::ALL.into_iter().find(|q| q.text().eq_ignore_ascii_case(&name.text));
         if found.is_none() {
-            let near = similar(&name.text, Qualifier::ALL.iter().map(|q| q.text()));
+            let near = meant(&name.text);
             self.c.report(
                 Diagnostic::new(
                     codes::UNKNOWN_QUALIFIER,
@@ -163,7 +163,7 @@ impl<'b, 'c, 'a> Resolver<'b, 'c, 'a> {
                     format!("there is no action qualifier `{}`", name.text),
                 )
                 .help(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
+                    Some(near) => format!("did you mean `{}`?", near.text()),
                     None => "the qualifiers are N, S, R, L, D, P, P1, P0, SD, DS and SL".into(),
                 }),
             );
@@ -198,6 +198,16 @@ impl<'b, 'c, 'a> Resolver<'b, 'c, 'a> {
             }
         }
     }
+}
+
+/// The qualifier that was meant, if that can be told: the same letters in another order.
+fn meant(text: &str) -> Option<Qualifier> {
+    let letters = |text: &str| {
+        let mut letters = text.to_ascii_uppercase().into_bytes();
+        letters.sort_unstable();
+        letters
+    };
+    Qualifier::ALL.into_iter().find(|q| letters(q.text()) == letters(text))
 }
 
 /// A place as text if it is the same in all scans.

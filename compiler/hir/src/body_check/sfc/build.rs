@@ -66,8 +66,9 @@ impl<'a> Builder<'_, '_, 'a> {
         for step in steps_of(body) {
             let pointer: *const ast::Step = step;
             let Some(&var) = self.c.cx.steps.get(&pointer) else {
-                // Declared twice; reported there.
+                // Declared twice; reported there, and transitions that name it need no further message.
                 self.sound = false;
+                self.c.cx.first_report(self.c.scope, &format!("step {}", fold(&step.name.text)));
                 continue;
             };
             let id = self.chart.steps.push(Step {
@@ -146,7 +147,7 @@ impl<'a> Builder<'_, '_, 'a> {
                 "FROM" => "write FROM and the step, or in ( ) the steps, that it leaves",
                 _ => "write TO and the step, or in ( ) the steps, that it activates",
             };
-            self.wrong(Diagnostic::new(codes::TRANSITION_WITHOUT_STEPS, transition.span.before(), message).help(help));
+            self.wrong(Diagnostic::new(codes::TRANSITION_WITHOUT_STEPS, head(transition.span), message).help(help));
             return None;
         }
         let mut steps = Vec::new();
