@@ -10,10 +10,19 @@ macro_rules! plain {
     ($($name:literal),*) => { [$(($name, include_str!(concat!("../blocks/", $name, ".st")))),*] };
 }
 
-/// Every standard function block: its name and its source, one FUNCTION_BLOCK each.
+/// The source of the blocks that a chart uses and users do not see: all FUNCTION_BLOCKs of this one.
+const ACTION_CONTROL: &str = "ACTION_CONTROL";
+
+/// Whether a block that is part of plcc cannot be named by users: their own of this name hides nothing.
+pub fn is_internal(name: &str) -> bool {
+    name.starts_with("ACTION_")
+}
+
+/// Every standard function block: its name and its source, one FUNCTION_BLOCK each, but for the parts of ACTION_CONTROL.
 pub fn blocks() -> &'static [(&'static str, &'static str)] {
     static BLOCKS: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
         let plain = plain!["SR", "RS", "R_TRIG", "F_TRIG", "CTU", "CTD", "CTUD", "TON", "TOF", "TP"];
+        let action_control = [(ACTION_CONTROL, include_str!("../blocks/ACTION_CONTROL.st"))];
         let variants = plain.iter().flat_map(|(name, source)| {
             let types: &[Elem] = match *name {
                 "CTU" | "CTD" | "CTUD" => &[Elem::Int, Elem::Dint, Elem::Lint, Elem::Udint, Elem::Ulint],
@@ -22,7 +31,7 @@ pub fn blocks() -> &'static [(&'static str, &'static str)] {
             };
             types.iter().map(move |t| variant(name, source, *t))
         });
-        plain.iter().copied().chain(variants).collect()
+        plain.iter().copied().chain(variants).chain(action_control).collect()
     });
     &BLOCKS
 }
@@ -58,7 +67,7 @@ mod tests {
             assert_eq!(source.matches(&format!("\nFUNCTION_BLOCK {name}\n")).count(), 1, "{name}");
             assert_eq!(blocks().iter().filter(|(n, _)| n == name).count(), 1, "{name}");
         }
-        assert_eq!(blocks().len(), 10 + 3 * 5 + 3 * 2);
+        assert_eq!(blocks().len(), 10 + 3 * 5 + 3 * 2 + 1);
     }
 
     #[test]

@@ -858,6 +858,122 @@ t(IN := a, PT := T#1s, Q => x);\n\
 t(IN := b, PT := T#1s, Q => y);\n\
 END_PROGRAM\n\
 ```\n";
+    // ---- E0430..: Sequential Function Chart ----
+    UNKNOWN_STEP "E0430" Error "a transition names no step" "\
+FROM and TO name steps of the same chart.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp; END_STEP\n\
+STEP Run: END_STEP\n\
+TRANSITION FROM Idle TO Run := go; END_TRANSITION\n\
+TRANSITION FROM Run TO Idel := NOT go; END_TRANSITION\n\
+END_PROGRAM\n\
+```\n";
+    NO_INITIAL_STEP "E0431" Error "a network has no initial step" "\
+Steps that transitions connect are one network, and each network starts with its one INITIAL_STEP. Here none of the steps is ever active.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+STEP Idle: lamp; END_STEP\n\
+STEP Run: END_STEP\n\
+TRANSITION FROM Idle TO Run := go; END_TRANSITION\n\
+TRANSITION FROM Run TO Idle := NOT go; END_TRANSITION\n\
+END_PROGRAM\n\
+```\n";
+    SEVERAL_INITIAL_STEPS "E0432" Error "a network has several initial steps" "\
+Steps that transitions connect are one network, and it starts with exactly one INITIAL_STEP. To start several sequences together, begin with a step from which one transition leads to all of them, or write separate networks.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp; END_STEP\n\
+INITIAL_STEP Run: END_STEP\n\
+TRANSITION FROM Idle TO Run := go; END_TRANSITION\n\
+END_PROGRAM\n\
+```\n";
+    TRANSITION_WITHOUT_STEPS "E0433" Error "a transition has no FROM or no TO" "\
+A transition leads from one or more steps to one or more steps.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp; END_STEP\n\
+TRANSITION FROM Idle := go; END_TRANSITION\n\
+END_PROGRAM\n\
+```\n\nA sequence that ends has a last step without a transition behind it.\n";
+    STEP_TWICE "E0434" Error "a step stands twice in one FROM or TO" "\
+FROM and TO are sets of steps; a step can be active once.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp; END_STEP\n\
+STEP Run: END_STEP\n\
+TRANSITION FROM Idle TO (Run, Run) := go; END_TRANSITION\n\
+END_PROGRAM\n\
+```\n";
+    UNKNOWN_QUALIFIER "E0435" Error "there is no such action qualifier" "\
+The qualifiers are N, S, R, L, D, P, P1, P0, SD, DS and SL.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp(LS, T#5s); END_STEP\n\
+END_PROGRAM\n\
+```\n";
+    ACTION_TIME "E0436" Error "the duration of an action is missing or means nothing" "\
+L, D, SD, DS and SL take a TIME: `lamp(L, T#5s)`. The other qualifiers take none.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp(L); END_STEP\n\
+END_PROGRAM\n\
+```\n";
+    NOT_AN_ACTION "E0437" Error "a step names no action" "\
+A step acts on ACTION blocks of its POU and on BOOL variables.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR speed : INT; END_VAR\n\
+INITIAL_STEP Idle: speed(S); END_STEP\n\
+END_PROGRAM\n\
+```\n\nPut the assignment into an ACTION block and name that.\n";
+    EQUAL_PRIORITIES "E0438" Error "two transitions behind one step have the same PRIORITY" "\
+When both conditions hold, exactly one transition fires: that with the lower number. Without numbers the order of the text decides.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+INITIAL_STEP Idle: lamp; END_STEP\n\
+STEP A: END_STEP\n\
+STEP B: END_STEP\n\
+TRANSITION (PRIORITY := 1) FROM Idle TO A := go; END_TRANSITION\n\
+TRANSITION (PRIORITY := 1) FROM Idle TO B := go; END_TRANSITION\n\
+END_PROGRAM\n\
+```\n";
+    CHART_IN_FUNCTION "E0439" Error "a function cannot be a chart" "\
+A chart remembers which steps are active; a FUNCTION remembers nothing between its calls.\n\
+\n\
+```st\n\
+FUNCTION F : INT\n\
+VAR_INPUT go : BOOL; END_VAR\n\
+INITIAL_STEP Idle: END_STEP\n\
+END_FUNCTION\n\
+```\n\nMake it a FUNCTION_BLOCK.\n";
+    CHART_OPTION "W0440" Warning "an option of charts has no effect" "\
+`{sfc_firing := 'strong'}` and `{sfc_transition := 'edge'}` stand between the declarations of a POU and its first step.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR go, lamp : BOOL; END_VAR\n\
+{sfc_firing := 'strnog'}\n\
+INITIAL_STEP Idle: lamp; END_STEP\n\
+END_PROGRAM\n\
+```\n";
     // ---- E05xx: configuration and project ----
     SEVERAL_CONFIGURATIONS "E0501" Error "there are several CONFIGURATIONs" "\
 A project has one.\n\

@@ -1,6 +1,7 @@
 //! Who may write a place, and what may be referred to (semantics.md \[S5\] \[R1\]).
 
 use crate::body::*;
+use crate::collect::charts;
 use crate::defs::*;
 use crate::expr::*;
 use plcc_diag::{Diagnostic, codes};
@@ -22,6 +23,14 @@ impl Checker<'_, '_> {
             }
             _ => return true,
         };
+        if charts::is_step(self.cx, var) {
+            let text = self.place_text(place);
+            self.report(
+                Diagnostic::new(codes::NOT_WRITABLE, place.span, format!("`{text}` belongs to the chart"))
+                    .help("steps are activated and left by transitions only"),
+            );
+            return false;
+        }
         // The first member from the outside decides for instances: inputs may be written, outputs not.
         for step in &place.steps {
             match step {
@@ -117,6 +126,16 @@ impl Checker<'_, '_> {
                 Root::Address(a) => a.bit.is_some(),
                 _ => false,
             };
+        if let Root::Var(var) = place.root
+            && charts::is_step(self.cx, var)
+        {
+            let text = self.place_text(place);
+            self.report(
+                Diagnostic::new(codes::NO_REFERENCE, place.span, format!("{what} cannot refer to `{text}`"))
+                    .help("a step belongs to its chart; copy the value to a variable and pass that"),
+            );
+            return false;
+        }
         if bit {
             self.report(
                 Diagnostic::new(codes::NO_REFERENCE, place.span, format!("{what} cannot refer to a single bit"))

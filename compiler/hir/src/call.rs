@@ -134,6 +134,11 @@ impl<'a> Checker<'_, 'a> {
                     let place = Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span };
                     return self.instance_callee(place);
                 }
+                if let Some(scope) = self.scope
+                    && let Some(action) = self.cx.action_named(scope, &key)
+                {
+                    return Target::User(Callee::Action(None, action), action);
+                }
                 if ty == Types::ERROR && !self.cx.pous.contains_key(&key) && plcc_stdlib::funcs::find(&key).is_none() {
                     return Target::Reported;
                 }
@@ -220,7 +225,7 @@ impl<'a> Checker<'_, 'a> {
     fn member_callee(&mut self, base: &'a ast::Expr, name: &'a ast::Name, whole: &'a ast::Expr) -> Target {
         let Some(instance) = self.place(base) else { return Target::Reported };
         if let Some(pou) = self.cx.instance_of(instance.ty)
-            && let Some(Local::Action(action)) = self.cx.pou_slots[pou].scope.get(&fold(&name.text)).copied()
+            && let Some(action) = self.cx.action_named(pou, &name.text)
         {
             return Target::User(Callee::Action(Some(instance), action), action);
         }

@@ -1,6 +1,8 @@
 //! Declares every name: POUs, actions, types, variables. In: all syntax trees. Out: name tables and open slots in [`Cx`].
 //! Types and initial values are resolved afterwards, on demand (`resolve`, `initial`).
 
+pub(crate) mod charts;
+
 use crate::cx::*;
 use crate::defs::*;
 use crate::init::Init;
@@ -39,6 +41,7 @@ pub(crate) fn collect<'a>(cx: &mut Cx<'a>, units: &[Unit<'a>]) {
     }
     for (id, pou) in pous {
         declare_vars(cx, id, pou);
+        charts::declare_steps(cx, id, &pou.body);
         for action in &pou.actions {
             declare_action(cx, id, action);
         }
@@ -92,6 +95,14 @@ fn declare_pou<'a>(cx: &mut Cx<'a>, pou: &'a ast::Pou, unit: &Unit<'a>) -> PouId
     };
     let key = fold(&pou.name.text);
     let id = new_pou(cx, &pou.name, kind, unit.builtin, Some(&pou.body), pou.span);
+    charts::read_options(cx, id, pou, unit);
+    if unit.builtin {
+        // A name that no user can hide, and for some blocks the only one.
+        cx.pous.insert(internal_name(&key), id);
+        if plcc_stdlib::blocks::is_internal(&key) {
+            return id;
+        }
+    }
     match cx.pous.get(&key).copied() {
         Some(first) if !cx.defs.pous[first].builtin => {
             duplicate(cx, "POU", &pou.name, cx.defs.pous[first].span);
@@ -127,6 +138,11 @@ fn declare_pou<'a>(cx: &mut Cx<'a>, pou: &'a ast::Pou, unit: &Unit<'a>) -> PouId
     id
 }
 
+/// The key of a block that is part of plcc, which users can neither name nor hide.
+pub(crate) fn internal_name(name: &str) -> SmolStr {
+    format!("${name}").into()
+}
+
 fn new_pou<'a>(
     cx: &mut Cx<'a>,
     name: &ast::Name,
@@ -147,7 +163,7 @@ fn new_pou<'a>(
         builtin,
         span: name.span,
     });
-    cx.pou_slots.push(PouSlot { scope: Default::default(), body });
+    cx.pou_slots.push(PouSlot { scope: Default::default(), body, chart_options: Default::default() });
     id
 }
 
@@ -165,8 +181,11 @@ fn declare_action<'a>(cx: &mut Cx<'a>, owner: PouId, action: &'a ast::Action) {
     cx.defs.pous[id].profile = cx.defs.pous[owner].profile;
     cx.defs.pous[owner].actions.push(id);
     let key = fold(&action.name.text);
+    charts::declare_steps(cx, owner, &action.body);
     let first = match cx.pou_slots[owner].scope.get(&key) {
         Some(Local::Action(first)) => Some(cx.defs.pous[*first].span),
+        // A step and the action that it runs may share their name; the name alone means the step.
+        Some(Local::Var(var)) if charts::is_step(cx, *var) => return,
         Some(Local::Var(var) | Local::External(var)) => Some(cx.defs.vars[*var].span),
         Some(Local::Missing) | None => None,
     };

@@ -1,5 +1,6 @@
 //! What all passes over the declarations share: the name tables, what is still to be resolved, and the list of messages.
 
+use crate::collect::charts::ChartOptions;
 use crate::defs::*;
 use crate::init::Init;
 use crate::types::{Type, TypeId, Types};
@@ -77,12 +78,16 @@ pub(crate) enum Local {
 pub(crate) struct PouSlot<'a> {
     pub scope: FxHashMap<SmolStr, Local>,
     pub body: Option<&'a ast::Body>,
+    /// How its charts move, by its pragmas.
+    pub chart_options: ChartOptions,
 }
 
 pub(crate) struct Cx<'a> {
     pub defs: Defs,
     pub diags: Diagnostics,
     pub files: FxHashMap<FileId, Profile>,
+    /// Files that are part of plcc: their names mean what plcc declares, whatever the user declares.
+    pub builtin_files: FxHashSet<FileId>,
     pub globals: FxHashMap<SmolStr, VarId>,
     pub pous: FxHashMap<SmolStr, PouId>,
     pub types: FxHashMap<SmolStr, usize>,
@@ -101,6 +106,10 @@ pub(crate) struct Cx<'a> {
     pub mentioned: std::cell::RefCell<FxHashSet<VarId>>,
     /// Inputs declared R_EDGE or F_EDGE.
     pub edges: FxHashMap<VarId, crate::edges::EdgeInput>,
+    /// The variables of steps; a step whose name was declared before has none.
+    pub steps: FxHashMap<*const ast::Step, VarId>,
+    /// The type of these variables, once there is one.
+    pub step_type: Option<TypeId>,
     /// Names that were reported as unknown, by POU: one message each.
     reported: FxHashSet<(Option<PouId>, SmolStr)>,
 }
@@ -111,6 +120,7 @@ impl<'a> Cx<'a> {
             defs: Defs::default(),
             diags: Diagnostics::new(),
             files: units.iter().map(|u| (u.file, u.profile)).collect(),
+            builtin_files: units.iter().filter(|u| u.builtin).map(|u| u.file).collect(),
             globals: FxHashMap::default(),
             pous: FxHashMap::default(),
             types: FxHashMap::default(),
@@ -123,6 +133,8 @@ impl<'a> Cx<'a> {
             codesys_only: 0,
             mentioned: Default::default(),
             edges: FxHashMap::default(),
+            steps: FxHashMap::default(),
+            step_type: None,
             reported: FxHashSet::default(),
         }
     }
@@ -143,6 +155,12 @@ impl<'a> Cx<'a> {
 
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.diags.push(diagnostic);
+    }
+
+    /// The ACTION of a POU, also one that shares its name with a step.
+    pub fn action_named(&self, pou: PouId, name: &str) -> Option<PouId> {
+        let pous = &self.defs.pous;
+        pous[pou].actions.iter().copied().find(|a| pous[*a].name.eq_ignore_ascii_case(name))
     }
 
     /// The name of a type in messages.

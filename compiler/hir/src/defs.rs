@@ -1,6 +1,7 @@
 //! Everything that is declared: POUs, variables, structures, enumerations, by typed ids.
 
 use crate::body::Body;
+use crate::chart::Chart;
 use crate::init::Init;
 use crate::types::{TypeId, Types};
 use index_vec::IndexVec;
@@ -44,6 +45,8 @@ pub struct Defs {
     pub globals: Vec<VarId>,
     /// Checked bodies, by POU.
     pub bodies: IndexVec<PouId, Body>,
+    /// Charts of the bodies in Sequential Function Chart, without those that are wrong in their structure.
+    pub charts: Vec<Chart>,
 }
 
 /// Kinds of POU.

@@ -10,6 +10,7 @@ pub mod app;
 pub mod body;
 mod body_check;
 mod call;
+pub mod chart;
 mod collect;
 mod comparison;
 mod config;

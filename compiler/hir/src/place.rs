@@ -1,6 +1,7 @@
 //! Names and access paths to places in memory, and who may touch what (semantics.md \[L3\] \[S5\]).
 
 use crate::body::*;
+use crate::collect::charts;
 use crate::cx::*;
 use crate::defs::*;
 use crate::expr::*;
@@ -236,7 +237,12 @@ impl<'a> Checker<'_, 'a> {
                         name.span,
                         format!("`{}` is an inner variable of `{}`", v.name, self.cx.defs.pous[pou].name),
                     )
-                    .help("from outside only inputs and outputs of an instance are visible; make it a VAR_OUTPUT");
+                    .help(match charts::is_step(self.cx, var) {
+                        true => "steps are visible inside of their POU only; copy what you need to a VAR_OUTPUT there",
+                        false => {
+                            "from outside only inputs and outputs of an instance are visible; make it a VAR_OUTPUT"
+                        }
+                    });
                     if !self.cx.defs.pous[pou].builtin {
                         d = d.also(v.span, "declared here");
                     }

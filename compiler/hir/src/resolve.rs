@@ -85,6 +85,11 @@ impl<'a> Cx<'a> {
     fn resolve_named(&mut self, name: &ast::Name, behind_reference: bool) -> Resolved {
         let plain = |ty| Resolved { ty, init: Init::Default };
         let key = fold(&name.text);
+        if self.builtin_files.contains(&name.span.file)
+            && let Some(&pou) = self.pous.get(&crate::collect::internal_name(&key))
+        {
+            return plain(self.defs.types.intern(Type::Instance(pou)));
+        }
         if let Some(&slot) = self.types.get(&key) {
             return self.resolve_slot(slot, name.span, behind_reference);
         }

@@ -1,5 +1,6 @@
 //! Bodies to [`Body`](crate::body::Body): one module per notation.
 
+pub(crate) mod sfc;
 mod st;
 
 use crate::body::Body;
@@ -36,6 +37,6 @@ fn check<'a>(cx: &mut Cx<'a>, id: PouId, body: &'a ast::Body) -> Body {
     match body {
         ast::Body::St(stmts) => st::check(cx, scope, stmts),
         ast::Body::Il(il) => not_yet(cx, il.span.before(), "Instruction List"),
-        ast::Body::Sfc(sfc) => not_yet(cx, sfc.span.before(), "Sequential Function Chart"),
+        ast::Body::Sfc(chart) => sfc::check(cx, id, scope, chart),
     }
 }

@@ -31,11 +31,21 @@ impl Blocks<'_, '_> {
             return false;
         }
         let rest = self.tokens[self.at..].iter().enumerate();
-        let mut body = rest.take_while(|(_, t)| {
+        let body = rest.take_while(|(_, t)| {
             let opens = matches!(t.kind, Tok::Program | Tok::Function | Tok::FunctionBlock);
             !opens && !Construct::closed_by(t.kind).is_some_and(Construct::is_pou)
         });
-        body.any(|(i, t)| t.kind == Tok::Id && t.first && self.is(i, "INITIAL_STEP"))
+        // Those inside an ACTION are its own.
+        let mut in_action = false;
+        for (i, t) in body {
+            match t.kind {
+                Tok::EndAction => in_action = false,
+                Tok::Id if t.first && self.is(i, "ACTION") => in_action = true,
+                Tok::Id if t.first && !in_action && self.is(i, "INITIAL_STEP") => return true,
+                _ => {}
+            }
+        }
+        false
     }
 
     /// `STEP name :`, `INITIAL_STEP name :`.
@@ -50,7 +60,8 @@ impl Blocks<'_, '_> {
             return false;
         }
         match self.peek(1).kind {
-            Tok::Id => true,
+            // TO: the grammar takes it, a missing FROM is reported with the steps.
+            Tok::Id | Tok::To => true,
             Tok::LParen => self.is(2, "PRIORITY") && self.peek(3).kind == Tok::Assign,
             _ => false,
         }

@@ -1,0 +1,129 @@
+//! Action control (semantics.md \[F8\]): which actions run in this scan. The meaning of each qualifier is in
+//! `stdlib/blocks/ACTION_CONTROL.st`; here are the instances, who feeds them, and when they may rest.
+
+use super::emit::*;
+use crate::body::{Callee, Expr, Place, Stmt};
+use crate::chart::{ActionId, ActionKind, Association, Chart, Qualifier, StepId};
+use crate::defs::Profile;
+use crate::types::Types;
+use plcc_diag::Span;
+
+/// The statements of steps (2) and (3) of the evolution (\[F2\]).
+pub(super) fn write(w: &mut Writer, chart: &Chart, out: &mut Vec<Stmt>) {
+    let mut users: Vec<Vec<User>> = chart.actions.iter().map(|_| Vec::new()).collect();
+    for (step, s) in chart.steps.iter_enumerated() {
+        for association in &s.associations {
+            users[association.action.index()].push(User { step, association });
+        }
+    }
+    let mut running = Vec::new();
+    for (id, users) in chart.actions.indices().zip(&users) {
+        running.push(control(w, chart, id, users, out));
+    }
+    for (action, running) in chart.actions.iter().zip(&running) {
+        if let ActionKind::Variable(place) = &action.kind {
+            out.push(assign(place.clone(), running.clone(), place.span));
+        }
+    }
+    bodies(w, chart, &users, &running, out);
+}
+
+/// A step that acts on the action in question.
+struct User<'c> {
+    step: StepId,
+    association: &'c Association,
+}
+
+/// Decides whether an action runs; gives the expression that says so.
+fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], out: &mut Vec<Stmt>) -> Expr {
+    let span = span_of(chart, users);
+    let flags = |q: Qualifier| -> Vec<Expr> {
+        users.iter().filter(|u| u.association.qualifier == q).map(|u| active(chart, u.step)).collect()
+    };
+    // Not stored, not timed, not reset: the action control of such an action is a wire.
+    if users.iter().all(|u| u.association.qualifier == Qualifier::N) {
+        return any(&flags(Qualifier::N), span);
+    }
+    let name = format!("a{}", id.index() + 1);
+    let control = w.instance("ACTION_CONTROL", &name, span);
+    let reset = any(&flags(Qualifier::R), span);
+    let mut body = Vec::new();
+    let mut parts = Vec::new();
+    let mut stored = vec![w.output(&control, "Stored")];
+    for (n, user) in users.iter().enumerate() {
+        let Some(block) = part(user.association.qualifier) else { continue };
+        let part = w.instance(block, &format!("{name}p{}", n + 1), user.association.span);
+        let mut inputs = vec![("X", active(chart, user.step))];
+        if matches!(user.association.qualifier, Qualifier::SD | Qualifier::DS | Qualifier::SL) {
+            inputs.push(("R", reset.clone()));
+            stored.push(w.output(&part, "Stored"));
+        }
+        inputs.extend(user.association.time.clone().map(|time| ("T", time)));
+        body.push(w.call(&part, inputs, user.association.span));
+        parts.push(w.output(&part, "Q"));
+    }
+    let mut inputs = vec![("Parts", any(&parts, span))];
+    for (input, qualifier) in [("N", Qualifier::N), ("S", Qualifier::S), ("R", Qualifier::R)] {
+        let flags = flags(qualifier);
+        if !flags.is_empty() {
+            inputs.push((input, any(&flags, span)));
+        }
+    }
+    body.push(w.call(&control, inputs, span));
+    // It rests while none of its steps is active, nothing is stored, and the last scan has seen that: then no part of it
+    // would change.
+    let awake = variable(w.hidden(&format!("{name}awake"), Types::elem(BOOL), span), Types::elem(BOOL), span);
+    let steps: Vec<Expr> = users.iter().map(|u| active(chart, u.step)).collect();
+    let runs = w.output(&control, "Q");
+    let mut why = steps.clone();
+    why.push(runs.clone());
+    why.append(&mut stored);
+    body.push(assign(awake.clone(), any(&why, span), span));
+    let mut needed = steps;
+    needed.push(read(awake));
+    out.push(when(any(&needed, span), body, span));
+    runs
+}
+
+/// The part of the action control that a qualifier needs for itself.
+fn part(qualifier: Qualifier) -> Option<&'static str> {
+    Some(match qualifier {
+        Qualifier::N | Qualifier::S | Qualifier::R => return None,
+        Qualifier::P | Qualifier::P1 => "ACTION_P1",
+        Qualifier::P0 => "ACTION_P0",
+        Qualifier::L => "ACTION_L",
+        Qualifier::D => "ACTION_D",
+        Qualifier::SD => "ACTION_SD",
+        Qualifier::DS => "ACTION_DS",
+        Qualifier::SL => "ACTION_SL",
+    })
+}
+
+/// Calls the bodies of active actions, in profile codesys first once more those that ran and do not any more (\[F10\]).
+fn bodies(w: &mut Writer, chart: &Chart, users: &[Vec<User>], running: &[Expr], out: &mut Vec<Stmt>) {
+    let final_scan = w.c.cx.defs.pous[w.owner].profile == Profile::Codesys;
+    let mut last = Vec::new();
+    let mut now = Vec::new();
+    for (id, action) in chart.actions.iter_enumerated() {
+        let ActionKind::Block(block) = action.kind else { continue };
+        let span = span_of(chart, &users[id.index()]);
+        let run = || call(Callee::Action(None, block), Vec::new(), span);
+        let running = &running[id.index()];
+        if !final_scan {
+            now.push(when(running.clone(), vec![run()], span));
+            continue;
+        }
+        let name = format!("a{}ran", id.index() + 1);
+        let ran: Place = variable(w.hidden(&name, Types::elem(BOOL), span), Types::elem(BOOL), span);
+        let ended = all(&[read(ran.clone()), not(running.clone())], span);
+        last.push(when(ended, vec![assign(ran.clone(), constant(0, BOOL, span), span), run()], span));
+        now.push(when(running.clone(), vec![assign(ran, constant(1, BOOL, span), span), run()], span));
+    }
+    out.append(&mut last);
+    out.append(&mut now);
+}
+
+/// Where an action is named first.
+fn span_of(chart: &Chart, users: &[User]) -> Span {
+    users.first().map_or(chart.span.before(), |u| u.association.span)
+}

@@ -1,0 +1,196 @@
+//! The transitions of a chart: which conditions are evaluated, which transition is chosen, what it changes.
+//! Steps (4), (5) and (6) of the evolution (semantics.md \[F2\]).
+
+use super::emit::*;
+use crate::body::{Expr, Place, Stmt, TempId};
+use crate::chart::{Chart, Firing, StepId, TransitionId, Trigger};
+use crate::collect::charts::field;
+use crate::types::Types;
+use index_vec::IndexVec;
+use plcc_diag::Span;
+use plcc_stdlib::elem::Elem;
+use plcc_stdlib::ops::Op;
+
+/// What the evolution of a chart keeps beside its steps.
+pub(super) struct State {
+    /// The clock of this call.
+    pub now: TempId,
+    /// Some transition fires in this call.
+    pub fires: TempId,
+    /// By transition: it fires in this call. FALSE between calls.
+    pub chosen: IndexVec<TransitionId, Place>,
+    /// With [`Trigger::Edge`]: the number of this call, and by transition the number of the call in which a TRUE counts.
+    pub edges: Option<(Place, IndexVec<TransitionId, Place>)>,
+}
+
+/// Steps (4) and (5).
+pub(super) fn evaluate(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
+    for set in chart.choices() {
+        // While a step that all of them take is not active, none is possible.
+        let transitions = || set.iter().map(|t| &chart.transitions[*t]);
+        let first = transitions().next();
+        let shared = first.and_then(|t| t.from.iter().copied().find(|s| transitions().all(|t| t.from.contains(s))));
+        let mut body = Vec::new();
+        for id in &set {
+            condition(w, chart, state, *id, shared, &mut body);
+        }
+        choose(chart, state, &set, &mut body);
+        match (shared, first) {
+            (Some(step), Some(first)) => out.push(when(active(chart, step), body, first.span)),
+            _ => out.append(&mut body),
+        }
+    }
+}
+
+/// (4) Evaluates a condition if all preceding steps are active: `chosen` then says whether it counts. The step `known` is
+/// active where this stands.
+fn condition(
+    w: &mut Writer,
+    chart: &Chart,
+    state: &State,
+    id: TransitionId,
+    known: Option<StepId>,
+    out: &mut Vec<Stmt>,
+) {
+    let transition = &chart.transitions[id];
+    let span = transition.span;
+    let mut body = transition.condition.stmts.clone();
+    let value = transition.condition.value.clone();
+    match &state.edges {
+        None => body.push(assign(state.chosen[id].clone(), value, span)),
+        Some((calls, counts)) => {
+            let holds = w.temp(BOOL);
+            body.push(assign_temp(holds, value, span));
+            let holds = read_temp(holds, BOOL, span);
+            let due = counts[id].clone();
+            let rose = equal(Elem::Lint, read(due.clone()), read(calls.clone()));
+            body.push(assign(state.chosen[id].clone(), all(&[holds.clone(), rose], span), span));
+            // FALSE now: a TRUE in the next call counts.
+            let next = operation(Op::Add, Elem::Lint, vec![read(calls.clone()), constant(1, Elem::Lint, span)], span);
+            body.push(when(not(holds), vec![assign(due, next, span)], span));
+        }
+    }
+    let others = transition.from.iter().filter(|s| Some(**s) != known);
+    let others: Vec<Expr> = others.map(|s| active(chart, *s)).collect();
+    match others.as_slice() {
+        [] => out.append(&mut body),
+        _ => out.push(when(all(&others, span), body, span)),
+    }
+}
+
+/// (5) The choice (\[F4\] \[F5\]): of the transitions of `set` whose conditions count, those that fire. This is the one place
+/// that decides; operator modes will ask here whether the automatic decides at all.
+fn choose(chart: &Chart, state: &State, set: &[TransitionId], out: &mut Vec<Stmt>) {
+    if chart.firing == Firing::Strong {
+        for id in set {
+            let transition = &chart.transitions[*id];
+            let others = transition.to.iter().filter(|s| !transition.from.contains(s));
+            let free: Vec<Expr> = others.map(|s| not(active(chart, *s))).collect();
+            if !free.is_empty() {
+                narrow(state, *id, all(&free, transition.span), transition.span, out);
+            }
+        }
+    }
+    let mut ranked = set.to_vec();
+    ranked.sort_by_key(|id| chart.rank(*id));
+    for (n, id) in ranked.iter().enumerate() {
+        let transition = &chart.transitions[*id];
+        let before =
+            ranked[..n].iter().filter(|t| chart.transitions[**t].from.iter().any(|s| transition.from.contains(s)));
+        let rivals: Vec<Expr> = before.map(|t| read(state.chosen[*t].clone())).collect();
+        if !rivals.is_empty() {
+            narrow(state, *id, not(any(&rivals, transition.span)), transition.span, out);
+        }
+    }
+    let Some(first) = set.first() else { return };
+    let span = chart.transitions[*first].span;
+    let mut fires: Vec<Expr> = vec![read_temp(state.fires, BOOL, span)];
+    fires.extend(set.iter().map(|t| read(state.chosen[*t].clone())));
+    out.push(assign_temp(state.fires, any(&fires, span), span));
+}
+
+/// `chosen := chosen AND also`.
+fn narrow(state: &State, id: TransitionId, also: Expr, span: Span, out: &mut Vec<Stmt>) {
+    let chosen = &state.chosen[id];
+    out.push(assign(chosen.clone(), all(&[read(chosen.clone()), also], span), span));
+}
+
+/// (6) Clears all preceding steps of the chosen transitions, then sets all succeeding ones.
+pub(super) fn fire(chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
+    let mut body = Vec::new();
+    for (id, transition) in chart.transitions.iter_enumerated() {
+        let span = transition.span;
+        let clear = transition.from.iter().map(|s| assign(of_step(chart, *s, field::X), constant(0, BOOL, span), span));
+        body.push(when(read(state.chosen[id].clone()), clear.collect(), span));
+    }
+    for (id, transition) in chart.transitions.iter_enumerated() {
+        let span = transition.span;
+        let mut set = vec![assign(state.chosen[id].clone(), constant(0, BOOL, span), span)];
+        for step in &transition.to {
+            activate(chart, state, *step, span, &mut set);
+        }
+        body.push(when(read(state.chosen[id].clone()), set, span));
+    }
+    let span = chart.span.before();
+    out.push(when(read_temp(state.fires, BOOL, span), body, span));
+}
+
+/// A step becomes active: its time starts (\[F6\]).
+fn activate(chart: &Chart, state: &State, step: StepId, span: Span, out: &mut Vec<Stmt>) {
+    out.push(assign(of_step(chart, step, field::X), constant(1, BOOL, span), span));
+    out.push(assign(of_step(chart, step, field::T), constant(0, Elem::Time, span), span));
+    out.push(assign(of_step(chart, step, field::START), read_temp(state.now, Elem::Time, span), span));
+}
+
+/// The variables of this part.
+pub(super) fn state(w: &mut Writer, chart: &Chart) -> State {
+    let (now, fires) = (w.temp(Elem::Time), w.temp(BOOL));
+    let mut each = |name: &str, elem: Elem| -> IndexVec<TransitionId, Place> {
+        let ty = Types::elem(elem);
+        let list = chart.transitions.iter_enumerated();
+        list.map(|(id, t)| variable(w.hidden(&format!("t{}{name}", id.index() + 1), ty, t.span), ty, t.span)).collect()
+    };
+    let chosen = each("chosen", BOOL);
+    let edges = (chart.trigger == Trigger::Edge).then(|| each("due", Elem::Lint));
+    let edges = edges.map(|due| {
+        let ty = Types::elem(Elem::Lint);
+        (variable(w.hidden("calls", ty, chart.span), ty, chart.span.before()), due)
+    });
+    State { now, fires, chosen, edges }
+}
+
+/// What comes before step (1): in the first call the time of the initial steps starts (\[F6\]); after a call that did not come
+/// to its end (a fault that ENO caught) nothing is left chosen.
+pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) -> Place {
+    let (ty, span) = (Types::elem(BOOL), chart.span.before());
+    let time = Types::elem(Elem::Time);
+    let Some(clock) = plcc_stdlib::funcs::find("TIME") else { plcc_diag::bug!("there is no TIME()") };
+    let kind = crate::body::ExprKind::Std { func: clock, elem: Elem::Time, args: Vec::new() };
+    out.push(assign_temp(state.now, Expr { kind, ty: time, span }, span));
+    out.push(assign_temp(state.fires, constant(0, BOOL, span), span));
+    let started = variable(w.hidden("started", ty, span), ty, span);
+    let initial = chart.networks.iter().map(|n| n.initial);
+    let now = || read_temp(state.now, Elem::Time, span);
+    let mut first = vec![assign(started.clone(), constant(1, BOOL, span), span)];
+    first.extend(initial.map(|s| assign(of_step(chart, s, field::START), now(), span)));
+    out.push(when(not(read(started)), first, span));
+    if let Some((calls, _)) = &state.edges {
+        let next = operation(Op::Add, Elem::Lint, vec![read(calls.clone()), constant(1, Elem::Lint, span)], span);
+        out.push(assign(calls.clone(), next, span));
+    }
+    let unfinished = variable(w.hidden("unfinished", ty, span), ty, span);
+    let forget = state.chosen.iter().map(|c| assign(c.clone(), constant(0, BOOL, span), span)).collect();
+    out.push(when(read(unfinished.clone()), forget, span));
+    out.push(assign(unfinished.clone(), constant(1, BOOL, span), span));
+    unfinished
+}
+
+/// (1) Refreshes the times of active steps.
+pub(super) fn times(chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
+    for (id, step) in chart.steps.iter_enumerated() {
+        let span = step.span;
+        let now = read_temp(state.now, Elem::Time, span);
+        let since = operation(Op::Sub, Elem::Time, vec![now, read(of_step(chart, id, field::START))], span);
+        out.push(when(active(chart, id), vec![assign(of_step(chart, id, field::T), since, span)], span));
+    }
+}
