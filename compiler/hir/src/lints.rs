@@ -71,7 +71,8 @@ impl Lint<'_, '_> {
     fn variables(&self, pou: PouId, out: &mut Vec<Diagnostic>) {
         for &id in &self.cx.defs.pous[pou].vars {
             let var = &self.cx.defs.vars[id];
-            if var.is_hidden() {
+            // What a notation adds (a step) has no declaration.
+            if self.cx.var_slots[id].decl.is_none() {
                 continue;
             }
             if let Some(warning) = self.variable(pou, id, var) {
