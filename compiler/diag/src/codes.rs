@@ -969,7 +969,7 @@ END_FUNCTION\n\
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR go, lamp : BOOL; END_VAR\n\
+VAR lamp : BOOL; END_VAR\n\
 {sfc_firing := 'strnog'}\n\
 INITIAL_STEP Idle: lamp; END_STEP\n\
 END_PROGRAM\n\
