@@ -36,6 +36,8 @@ pub struct Image {
     pub sources: Vec<Source>,
     /// Values that outputs take when the program stops on a fault, besides 0.
     pub safe_state: Vec<SafeValue>,
+    /// VAR_ACCESS: other names of variables.
+    pub access: Vec<AccessPath>,
 }
 
 /// A type, as memory sees it.
@@ -112,10 +114,23 @@ pub struct Task {
     pub name: String,
     /// `None`: every base tick, after the others.
     pub interval_ns: Option<i64>,
+    /// SINGLE: the BOOL that releases the task when it rises, as a byte of the region and a bit of it.
+    pub single: Option<(u32, Option<u8>)>,
     /// 0 is the highest.
     pub priority: u32,
     /// Longest execution.
     pub watchdog_ns: i64,
+}
+
+/// A name that VAR_ACCESS gives to a variable.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AccessPath {
+    /// The name.
+    pub name: String,
+    /// The variable's path.
+    pub path: String,
+    /// READ_WRITE; else it may only be watched.
+    pub writable: bool,
 }
 
 /// A place in a source.

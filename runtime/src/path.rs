@@ -144,9 +144,20 @@ impl<'i> Resolver<'i> {
             Ok(found) => Ok(found),
             Err(error) => {
                 let stripped = self.strip(path.trim());
+                if let Some(found) = self.find_access(stripped) {
+                    return found;
+                }
                 if stripped.len() == path.trim().len() { Err(error) } else { self.find_exact(stripped) }
             }
         }
+    }
+
+    /// A path that starts with a name of VAR_ACCESS.
+    fn find_access(&self, path: &str) -> Option<Result<Leaf, String>> {
+        let end = path.find(['.', '[']).unwrap_or(path.len());
+        let access = self.image.access.iter().find(|a| a.name.eq_ignore_ascii_case(&path[..end]))?;
+        let found = self.find_exact(&format!("{}{}", access.path, &path[end..]));
+        Some(found.map(|leaf| Leaf { constant: leaf.constant || !access.writable, ..leaf }))
     }
 
     fn find_exact(&self, path: &str) -> Result<Leaf, String> {

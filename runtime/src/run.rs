@@ -152,7 +152,13 @@ mod tests {
             region_bytes: 128,
             types: vec![TypeDesc::Elem(Elem::Int.code())],
             roots: vec![root],
-            tasks: vec![Task { name: String::new(), interval_ns: None, priority: 0, watchdog_ns: 30_000_000 }],
+            tasks: vec![Task {
+                name: String::new(),
+                interval_ns: None,
+                single: None,
+                priority: 0,
+                watchdog_ns: 30_000_000,
+            }],
             files: vec!["m.st".into()],
             sources: vec![Source { file: 0, line: 3, column: 5, pou: "M".into(), what: "a".into() }],
             ..Image::default()

@@ -75,6 +75,7 @@ impl Scan<'_> {
 
     fn execute(&mut self, tick: Tick) -> Result<(), (u32, usize)> {
         let Scan { schedule, engine, mem, watchdog, stats, .. } = self;
+        schedule.sample(mem.as_slice());
         schedule.release(tick, |task| {
             let before = stats.as_ref().map(|_| monotonic_ns());
             watchdog.start(task);

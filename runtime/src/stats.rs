@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn both_forms_tell_the_same() {
-        let tasks = [Task { name: "Fast".into(), interval_ns: None, priority: 0, watchdog_ns: 0 }];
+        let tasks = [Task { name: "Fast".into(), interval_ns: None, single: None, priority: 0, watchdog_ns: 0 }];
         let mut stats = Stats::new(&tasks);
         for ns in [100, 300, 200] {
             stats.record(0, ns);

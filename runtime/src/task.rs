@@ -12,8 +12,31 @@ pub struct Schedule {
     /// Task numbers in the order in which they run when several are due.
     order: Vec<usize>,
     intervals: Vec<Option<i64>>,
+    events: Vec<Option<Event>>,
     due: Vec<i64>,
     overruns: Vec<u64>,
+}
+
+/// A BOOL variable whose rising edge releases a task.
+#[derive(Debug)]
+struct Event {
+    offset: usize,
+    bit: Option<u8>,
+    level: bool,
+    rose: bool,
+}
+
+impl Event {
+    fn new((offset, bit): (u32, Option<u8>)) -> Self {
+        Self { offset: offset as usize, bit, level: false, rose: false }
+    }
+
+    fn sample(&mut self, memory: &[u8]) {
+        let byte = memory.get(self.offset).copied().unwrap_or(0);
+        let level = self.bit.map_or(byte != 0, |bit| byte >> bit & 1 != 0);
+        self.rose = level && !self.level;
+        self.level = level;
+    }
 }
 
 /// The base tick: the greatest common divisor of the intervals.
@@ -36,9 +59,16 @@ impl Schedule {
         Self {
             order,
             intervals: tasks.iter().map(|t| t.interval_ns.filter(|ns| *ns > 0)).collect(),
+            events: tasks.iter().map(|t| t.single.map(Event::new)).collect(),
             due: vec![0; tasks.len()],
             overruns: vec![0; tasks.len()],
         }
+    }
+
+    /// Reads the variables that release tasks (SINGLE), at the start of a tick. A task with an INTERVAL too runs
+    /// periodically while its variable is FALSE.
+    pub fn sample(&mut self, memory: &[u8]) {
+        self.events.iter_mut().flatten().for_each(|event| event.sample(memory));
     }
 
     /// Releases of each task that started late or not at all because cycles took too long.
@@ -52,7 +82,11 @@ impl Schedule {
             let n = *n;
             let now = tick.now_ns;
             let mut releases = tick.late;
-            if let Some(interval) = self.intervals[n] {
+            let (rose, level) = self.events[n].as_ref().map_or((false, false), |e| (e.rose, e.level));
+            if self.events[n].is_some() && !rose && (level || self.intervals[n].is_none()) {
+                continue;
+            }
+            if let Some(interval) = self.intervals[n].filter(|_| !rose) {
                 if now < self.due[n] {
                     continue;
                 }
@@ -75,7 +109,7 @@ mod tests {
     use super::*;
 
     fn task(name: &str, ms: Option<i64>, priority: u32) -> Task {
-        Task { name: name.into(), interval_ns: ms.map(|m| m * 1_000_000), priority, watchdog_ns: 1 }
+        Task { name: name.into(), interval_ns: ms.map(|m| m * 1_000_000), single: None, priority, watchdog_ns: 1 }
     }
 
     fn runs(tasks: &[Task], tick_ms: i64, ticks: i64) -> Vec<String> {
@@ -106,6 +140,29 @@ mod tests {
     fn a_task_runs_in_the_first_tick_at_or_after_its_due_time() {
         let tasks = [task("t", Some(25), 0)];
         assert_eq!(runs(&tasks, 10, 8), ["t", "", "", "t", "", "t", "", ""]);
+    }
+
+    #[test]
+    fn a_rising_variable_releases_its_task() {
+        let event = Task { single: Some((3, Some(1))), ..task("event", None, 0) };
+        let both = Task { single: Some((2, None)), ..task("both", Some(20), 1) };
+        let tasks = [event, both];
+        let mut schedule = Schedule::new(&tasks);
+        let mut tick = |n: i64, bytes: [u8; 4]| {
+            let mut list = Vec::new();
+            schedule.sample(&bytes);
+            let _: Result<(), ()> = schedule.release(Tick { now_ns: n * 10_000_000, late: 0 }, |t| {
+                list.push(tasks[t].name.clone());
+                Ok(())
+            });
+            list.join(" ")
+        };
+        assert_eq!(tick(0, [0, 0, 0, 0]), "both");
+        assert_eq!(tick(1, [0, 0, 0, 2]), "event");
+        assert_eq!(tick(2, [0, 0, 0, 2]), "both");
+        assert_eq!(tick(3, [0, 0, 1, 1]), "both");
+        assert_eq!(tick(4, [0, 0, 1, 3]), "event");
+        assert_eq!(tick(5, [0, 0, 0, 0]), "both");
     }
 
     #[test]

@@ -132,7 +132,7 @@ mod tests {
     use std::time::Instant;
 
     fn task(watchdog_ms: i64) -> Task {
-        Task { name: String::new(), interval_ns: None, priority: 0, watchdog_ns: watchdog_ms * 1_000_000 }
+        Task { name: String::new(), interval_ns: None, single: None, priority: 0, watchdog_ns: watchdog_ms * 1_000_000 }
     }
 
     /// Spins until the flag is set or a time is over; how long it took.

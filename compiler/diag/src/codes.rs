@@ -1055,6 +1055,42 @@ END_CONFIGURATION\n\
 ```\n";
     TASKS_TWICE "E0507" Error "tasks are declared twice" "\
 Tasks stand in a CONFIGURATION or in [tasks] of project.toml, not in both.\n";
+    UNKNOWN_PATH "E0508" Error "an instance path leads nowhere" "\
+VAR_CONFIG and VAR_ACCESS name variables from the outside: resource, program instance, then the variable, through instances\n\
+of function blocks.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR x AT %I* : BOOL; END_VAR\n\
+VAR_OUTPUT y : BOOL; END_VAR\n\
+y := x;\n\
+END_PROGRAM\n\
+CONFIGURATION C\n\
+RESOURCE R ON PLC\n\
+PROGRAM P : Main;\n\
+END_RESOURCE\n\
+VAR_CONFIG\n\
+R.P.x AT %IX0.0 : BOOL;\n\
+R.P.z AT %IX0.1 : BOOL;\n\
+END_VAR\n\
+END_CONFIGURATION\n\
+```\n";
+    OPEN_ADDRESS "W0509" Warning "a variable was left without its address" "\
+`AT %I*` leaves the address to the VAR_CONFIG of the CONFIGURATION, one for each instance. Without one the variable is connected\n\
+to nothing.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR x AT %I* : BOOL; END_VAR\n\
+VAR_OUTPUT y : BOOL; END_VAR\n\
+y := x;\n\
+END_PROGRAM\n\
+CONFIGURATION C\n\
+RESOURCE R ON PLC\n\
+PROGRAM P : Main;\n\
+END_RESOURCE\n\
+END_CONFIGURATION\n\
+```\n";
     // ---- E06xx: faults at run time (plcc_stdlib::fault) ----
     FAULT_DIVISION_BY_ZERO "E0601" Error "division by zero" "\
 An integer was divided by 0 with / or MOD. Test the divisor first. The task stopped, outputs went to their safe state.\n";

@@ -8,7 +8,7 @@ use plcc_hir::app::{Application, Resource};
 use plcc_hir::{Area, Defs, PouId, Section, Type, TypeId, VarId};
 use plcc_mir::ir::Program;
 use plcc_mir::layout::{Layout, Slot};
-use plcc_runtime::image::{Field, Image, Root, SafeValue, Source, Task, TypeDesc};
+use plcc_runtime::image::{AccessPath, Field, Image, Root, SafeValue, Source, Task, TypeDesc};
 use plcc_runtime::path::Resolver;
 use plcc_stdlib::elem::Elem;
 use rustc_hash::FxHashMap;
@@ -39,6 +39,7 @@ pub fn build(
             .map(|t| Task {
                 name: t.name.to_string(),
                 interval_ns: t.interval_ns,
+                single: t.single.as_ref().map(|place| layout.address_of(defs, place, 0)),
                 priority: t.priority,
                 watchdog_ns: t.watchdog_ns,
             })
@@ -56,6 +57,11 @@ pub fn build(
             })
             .collect(),
         safe_state: Vec::new(),
+        access: app
+            .access
+            .iter()
+            .map(|a| AccessPath { name: a.name.to_string(), path: a.path.clone(), writable: a.writable })
+            .collect(),
     };
     image.safe_state = safe_state(&image, project, layout)?;
     Ok(image)

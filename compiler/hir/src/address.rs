@@ -20,7 +20,7 @@ pub fn parse(text: &str) -> Result<Address, String> {
             chars.next();
             c
         }
-        Some('*') => return Err("an address left open needs VAR_CONFIG, which is not implemented yet".into()),
+        Some('*') => return Err("VAR_CONFIG gives the address, with a size and a number".into()),
         _ => 'X',
     };
     let rest: String = chars.collect();
@@ -44,6 +44,16 @@ pub fn parse(text: &str) -> Result<Address, String> {
         return Err(format!("the highest byte of an area is {MAX_BYTE}"));
     }
     Ok(Address { area, byte: byte as u32, bit })
+}
+
+/// The area of an address that is left open: `%I*`.
+pub fn open(text: &str) -> Option<Area> {
+    match text.to_ascii_uppercase().as_str() {
+        "%I*" => Some(Area::Input),
+        "%Q*" => Some(Area::Output),
+        "%M*" => Some(Area::Memory),
+        _ => None,
+    }
 }
 
 /// An address and the bytes that it covers (0 for a bit).

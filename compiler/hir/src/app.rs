@@ -2,6 +2,7 @@
 
 use crate::body::{Expr, Place};
 use crate::defs::{PouId, VarId};
+use crate::init::Init;
 use plcc_diag::Span;
 use smol_str::SmolStr;
 
@@ -12,6 +13,24 @@ pub struct Application {
     pub name: SmolStr,
     /// At least one.
     pub resources: Vec<Resource>,
+    /// VAR_ACCESS: names by which variables are reached from outside.
+    pub access: Vec<Access>,
+}
+
+/// A variable of a program instance, through the instances in it.
+pub type VarPath = Vec<VarId>;
+
+/// `NAME : P1.x : INT READ_ONLY`.
+#[derive(Debug, Clone)]
+pub struct Access {
+    /// The name.
+    pub name: SmolStr,
+    /// What it names: a path as traces write it, or an address.
+    pub path: String,
+    /// READ_WRITE.
+    pub writable: bool,
+    /// Where.
+    pub span: Span,
 }
 
 /// A resource.
@@ -53,6 +72,11 @@ pub struct Program {
     pub inputs: Vec<(VarId, Expr)>,
     /// Copied from outputs after each execution.
     pub outputs: Vec<(VarId, Place)>,
+    /// Variables of this instance with an address of their own (VAR_CONFIG): copied from %I and %M before, to %Q and %M
+    /// after each execution.
+    pub located: Vec<(VarPath, Place)>,
+    /// Initial values of variables of this instance (VAR_CONFIG).
+    pub initial: Vec<(VarPath, Init)>,
     /// Where.
     pub span: Span,
 }

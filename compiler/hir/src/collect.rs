@@ -214,6 +214,7 @@ pub(crate) fn new_var<'a>(
         constant: false,
         retain: false,
         address: None,
+        open_address: None,
         init: Init::Default,
         refers_to: None,
         address_taken: false,
@@ -235,6 +236,10 @@ fn qualify(cx: &mut Cx, var: VarId, section: &ast::VarSection) {
 
 fn locate(cx: &mut Cx, var: VarId, decl: &ast::VarDecl) {
     let Some((text, span)) = &decl.at else { return };
+    if let Some(area) = crate::address::open(text) {
+        cx.defs.vars[var].open_address = Some(area);
+        return;
+    }
     match crate::address::parse(text) {
         Ok(address) => cx.defs.vars[var].address = Some(address),
         Err(message) => cx.push(
@@ -340,7 +345,10 @@ fn declare_var<'a>(
     let var = new_var(cx, name.text.clone(), name.span, place, Some(id), Some((&decl.ty, decl.init.as_ref())));
     qualify(cx, var, section);
     locate(cx, var, decl);
-    if decl.at.is_some() && !matches!(place, Section::Local) {
+    let instances = matches!(cx.defs.pous[id].kind, PouKind::Program | PouKind::FunctionBlock);
+    if cx.defs.vars[var].open_address.is_some() && instances && matches!(place, Section::Local) {
+        // VAR_CONFIG gives each instance its own address.
+    } else if decl.at.is_some() && !matches!(place, Section::Local) {
         cx.push(
             Diagnostic::new(codes::BAD_ADDRESS, decl.span, "only VAR and VAR_GLOBAL may be located with AT")
                 .help("declare the variable in VAR, or as VAR_GLOBAL"),
@@ -353,7 +361,7 @@ fn declare_var<'a>(
                 decl.span,
                 "only PROGRAMs and VAR_GLOBAL may hold located variables: each instance would share the address",
             )
-            .help("declare it as VAR_GLOBAL and use it with VAR_EXTERNAL, or pass it as a parameter"),
+            .help("declare it as VAR_GLOBAL and use it with VAR_EXTERNAL, or AT %I*, %Q*, %M* with an address in VAR_CONFIG"),
         );
         cx.defs.vars[var].address = None;
     }

@@ -80,6 +80,8 @@ fn without_configuration(cx: &mut Cx, selection: &Selection) -> Option<Applicati
         task,
         inputs: Vec::new(),
         outputs: Vec::new(),
+        located: Vec::new(),
+        initial: Vec::new(),
         span: cx.defs.pous[pou].span,
     };
     let unknown = |cx: &mut Cx, name: &str| {
@@ -133,7 +135,9 @@ fn without_configuration(cx: &mut Cx, selection: &Selection) -> Option<Applicati
         resource.tasks.push(free_task());
         resource.programs.push(instance(cx, pou, 0));
     }
-    Some(Application { name: Default::default(), resources: vec![resource] })
+    let app = Application { name: Default::default(), resources: vec![resource], access: Vec::new() };
+    crate::var_config::report_open(cx, &app);
+    Some(app)
 }
 
 /// The task of programs without one: runs last in every base tick.
@@ -148,16 +152,7 @@ fn free_task() -> Task {
 }
 
 fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<Application> {
-    let mut app = Application { name: config.name.text.clone(), resources: Vec::new() };
-    for section in &config.sections {
-        if matches!(section.kind, ast::SectionKind::Config | ast::SectionKind::Access) {
-            cx.push(Diagnostic::new(
-                codes::NOT_YET,
-                section.span.before(),
-                "VAR_CONFIG and VAR_ACCESS are not implemented yet",
-            ));
-        }
-    }
+    let mut app = Application { name: config.name.text.clone(), resources: Vec::new(), access: Vec::new() };
     if config.resources.len() > 1 {
         cx.push(
             Diagnostic::new(
@@ -173,6 +168,8 @@ fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<
         let resource = resource(cx, decl);
         app.resources.push(resource);
     }
+    crate::var_config::apply(cx, config, &mut app);
+    crate::var_config::report_open(cx, &app);
     if config.resources.iter().all(|r| r.programs.is_empty()) {
         cx.push(
             Diagnostic::new(codes::NO_PROGRAM, config.name.span, "this CONFIGURATION runs no program")
@@ -270,7 +267,7 @@ fn task<'a>(cx: &mut Cx<'a>, decl: &'a ast::TaskDecl) -> Task {
                 ),
                 None => {}
             },
-            "SINGLE" => cx.push(Diagnostic::new(codes::NOT_YET, name.span, "SINGLE is not implemented yet")),
+            "SINGLE" => task.single = crate::var_config::single(cx, value),
             _ => {
                 let hint = similar(&name.text, ["INTERVAL", "PRIORITY", "SINGLE"].into_iter());
                 cx.push(
@@ -317,6 +314,8 @@ fn program<'a>(cx: &mut Cx<'a>, decl: &'a ast::ProgramDecl, task: usize) -> Opti
         task,
         inputs: Vec::new(),
         outputs: Vec::new(),
+        located: Vec::new(),
+        initial: Vec::new(),
         span: decl.name.span,
     };
     for arg in &decl.args {

@@ -122,6 +122,8 @@ pub struct Var {
     pub retain: bool,
     /// `AT %..`.
     pub address: Option<Address>,
+    /// `AT %I*`: the area; each instance gets its address from VAR_CONFIG.
+    pub open_address: Option<Area>,
     /// The initial value; complete, with the type's own where none is written.
     pub init: Init,
     /// A reference that is initialised: `r : REF_TO INT := REF(x)`. A variable, then components and constant indices.

@@ -38,6 +38,7 @@ mod std_args;
 mod std_call;
 mod time_arithmetic;
 pub mod types;
+mod var_config;
 pub mod visit;
 
 pub use app::Application;

@@ -118,6 +118,7 @@ impl Lint<'_, '_> {
         let instance = matches!(self.cx.defs.types.get(var.ty), Type::Instance(_) | Type::Error);
         !(var.constant
             || var.address.is_some()
+            || var.open_address.is_some()
             || var.address_taken
             || var.refers_to.is_some()
             || instance

@@ -13,6 +13,7 @@
 //! A PROGRAM with variables whose address is taken is split (semantics.md \[R2\]): these lie in the addressable part, at
 //! the same distance from the first byte for each instance, so that the body reaches both with constant offsets.
 
+mod fixed;
 mod retain;
 
 use crate::lower::reach::Reach;

@@ -207,6 +207,9 @@ pub fn variables(defs: &Defs, layout: &Layout, resource: &Resource, image: &mut 
                 writer.variable(var, layout.program(n));
             }
         }
+        for (path, init) in &program.initial {
+            writer.at_path(path, layout.program(n), init);
+        }
     }
 }
 
@@ -217,6 +220,18 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
+    /// A value of its own for a variable inside an instance.
+    fn at_path(&mut self, path: &[VarId], mut instance: u32, init: &Init) {
+        for (n, &id) in path.iter().enumerate() {
+            let Some((offset, None)) = self.layout.offset(id, instance) else { return };
+            if n + 1 == path.len() {
+                let ty = self.defs.vars[id].ty;
+                self.image.write(offset, &bytes(self.defs, self.layout, ty, init));
+            }
+            instance = offset;
+        }
+    }
+
     fn variable(&mut self, id: VarId, instance: u32) {
         let var = &self.defs.vars[id];
         // A located variable without a value of its own leaves the bytes to the others at its address.

@@ -35,6 +35,7 @@ impl Reach {
         for program in &resource.programs {
             reach.pou(program.pou);
             program.inputs.iter().for_each(|(_, value)| visit::expr(value, &mut reach));
+            program.located.iter().for_each(|(_, place)| visit::place(place, Use::Written, &mut reach));
             program.outputs.iter().for_each(|(_, place)| visit::place(place, Use::Written, &mut reach));
         }
         for task in &resource.tasks {

@@ -7,7 +7,7 @@ use super::init::Image;
 use crate::layout::Layout;
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
-use plcc_hir::body::{ExprKind, Place, Root, Step};
+use plcc_hir::body::Place;
 use plcc_hir::shape::{extent, in_instance};
 use plcc_hir::{Defs, PouId, Type, TypeId, VarId};
 use rustc_hash::FxHashMap;
@@ -96,36 +96,9 @@ impl Writer<'_> {
     }
 
     fn address(&self, place: &Place, instance: u32) -> u32 {
-        let Root::Var(root) = place.root else { bug!("an initial reference to {:?}", place.root) };
-        let Some((mut offset, None)) = self.layout.offset(root, instance) else {
-            bug!("{} has no address", self.defs.vars[root].name)
-        };
-        let mut ty = self.defs.vars[root].ty;
-        for step in &place.steps {
-            match (step, &self.defs.types[ty]) {
-                (Step::Field(n), Type::Struct(id)) => {
-                    offset += self.layout.field(*id, *n);
-                    ty = self.defs.structs[*id].fields[*n as usize].ty;
-                }
-                (Step::Member(member), _) => {
-                    let Some((inside, _)) = self.layout.offset(*member, offset) else { bug!("a member without place") };
-                    offset = inside;
-                    ty = self.defs.vars[*member].ty;
-                }
-                (Step::Index(indices, _), Type::Array { dims, elem }) => {
-                    let mut flat = 0i64;
-                    for (index, dim) in indices.iter().zip(dims) {
-                        let ExprKind::Const(raw) = index.kind else {
-                            bug!("an initial reference with a variable index")
-                        };
-                        flat = flat * extent(*dim) as i64 + (raw as i64 - dim.0);
-                    }
-                    offset += flat as u32 * self.layout.size(self.defs, *elem);
-                    ty = *elem;
-                }
-                (step, ty) => bug!("an initial reference through {step:?} of {ty:?}"),
-            }
+        match self.layout.address_of(self.defs, place, instance) {
+            (offset, None) => offset,
+            (_, Some(_)) => bug!("a reference to a bit"),
         }
-        offset
     }
 }

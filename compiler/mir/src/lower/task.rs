@@ -9,9 +9,10 @@ use crate::ir::{Base, Func, FuncId, Place, Program};
 use crate::verify::bottom_up;
 use index_vec::IndexVec;
 use plcc_diag::bug;
-use plcc_hir::app::{self, Resource};
+use plcc_hir::app::{self, Resource, VarPath};
+use plcc_hir::body::{Place as HirPlace, Root};
 use plcc_hir::shape::repr;
-use plcc_hir::{Types, VarId};
+use plcc_hir::{Area, Types, VarId};
 
 /// Lowers the entry of task number `index`.
 pub(super) fn lower(cx: &mut Context<'_>, resource: &Resource, index: usize, task: &app::Task) -> Func {
@@ -39,24 +40,49 @@ impl FuncLower<'_, '_> {
                 self.aggregate_into(value, to.place, to.ty);
             }
         }
+        for (path, address) in program.located.iter().filter(|(_, at)| area(at) != Area::Output) {
+            let from = self.place(address);
+            let to = self.inside(&instance, path);
+            self.copy_scalar_or_all(&from, &to);
+        }
         let func = self.func(program.pou);
         self.at(program.span, "");
         self.b.call(func, Some(instance.place.clone()), &[], None);
         for (var, target) in &program.outputs {
             let from = self.program_variable(&instance, *var);
-            if repr(self.defs, from.ty).is_some() {
-                let value = self.load(&from);
-                let to = self.place(target);
-                self.store(&to, value);
-            } else {
-                let to = self.place(target);
-                self.copy_value(to.place, to.ty, from.place, from.ty);
-            }
+            let to = self.place(target);
+            self.copy_scalar_or_all(&from, &to);
+        }
+        for (path, address) in program.located.iter().filter(|(_, at)| area(at) != Area::Input) {
+            let from = self.inside(&instance, path);
+            let to = self.place(address);
+            self.copy_scalar_or_all(&from, &to);
         }
     }
 
     fn program_variable(&mut self, instance: &Access, var: VarId) -> Access {
         self.member(instance, var)
+    }
+
+    /// A variable inside a program instance.
+    fn inside(&mut self, instance: &Access, path: &VarPath) -> Access {
+        path.iter().fold(instance.clone(), |outer, var| self.member(&outer, *var))
+    }
+
+    fn copy_scalar_or_all(&mut self, from: &Access, to: &Access) {
+        if repr(self.defs, from.ty).is_some() {
+            let value = self.load(from);
+            return self.store(to, value);
+        }
+        self.copy_value(to.place.clone(), to.ty, from.place.clone(), from.ty);
+    }
+}
+
+/// The area of an address.
+fn area(place: &HirPlace) -> Area {
+    match place.root {
+        Root::Address(address) => address.area,
+        _ => bug!("VAR_CONFIG locates at {:?}", place.root),
     }
 }
 

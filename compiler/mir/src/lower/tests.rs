@@ -58,6 +58,7 @@ impl Test {
             constant: false,
             retain: false,
             address: None,
+            open_address: None,
             init: Init::Default,
             refers_to: None,
             address_taken: false,
@@ -115,10 +116,12 @@ impl Test {
             task: 0,
             inputs: Vec::new(),
             outputs: Vec::new(),
+            located: Vec::new(),
+            initial: Vec::new(),
             span: SPAN,
         };
         let resource = Resource { name: "".into(), tasks: vec![task], programs: vec![main] };
-        let app = Application { name: "".into(), resources: vec![resource] };
+        let app = Application { name: "".into(), resources: vec![resource], access: Vec::new() };
         let (program, layout) = lower(&self.defs, &app, 0, checks, false).expect("it fits");
         let problems = verify(&program);
         assert!(problems.is_empty(), "{}\n{}", problems[0], crate::print::program(&program, None));
@@ -508,8 +511,16 @@ fn layout_aligns_and_refuses_what_is_too_large() {
         ty = test.intern(Type::Array { dims: vec![(i64::MIN, i64::MAX)], elem: ty });
     }
     test.local("huge", ty);
-    let program =
-        Program { name: "Main".into(), pou: test.main, task: 0, inputs: Vec::new(), outputs: Vec::new(), span: SPAN };
+    let program = Program {
+        name: "Main".into(),
+        pou: test.main,
+        task: 0,
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        located: Vec::new(),
+        initial: Vec::new(),
+        span: SPAN,
+    };
     let resource = Resource { programs: vec![program], ..Resource::default() };
     let app = Application { resources: vec![resource], ..Application::default() };
     let error = lower(&test.defs, &app, 0, Checks::ALL, false).expect_err("too large");
@@ -553,6 +564,8 @@ fn programs_are_split_where_addresses_are_taken() {
         task: 0,
         inputs: Vec::new(),
         outputs: Vec::new(),
+        located: Vec::new(),
+        initial: Vec::new(),
         span: SPAN,
     };
     let resource = Resource { programs: vec![instance("A"), instance("B")], ..Resource::default() };
