@@ -35,6 +35,7 @@ pub mod rules;
 pub mod shape;
 mod sizes;
 mod std_args;
+mod std_bcd;
 mod std_call;
 mod time_arithmetic;
 pub mod types;
