@@ -12,7 +12,7 @@ use plcc_stdlib::ops::Op;
 
 impl Checker<'_, '_> {
     /// `BCD_TO_INT`, `WORD_BCD_TO_UINT`. An untyped constant is the smallest bit string that holds it.
-    pub fn from_bcd(
+    pub fn number_of_bcd(
         &mut self,
         func: &'static StdFn,
         number: Elem,
@@ -41,7 +41,13 @@ impl Checker<'_, '_> {
     }
 
     /// `TO_BCD_WORD`, `UINT_TO_BCD_WORD`.
-    pub fn to_bcd(&mut self, func: &'static StdFn, bits: Elem, (operand, at): (Operand, Span), span: Span) -> Operand {
+    pub fn bcd_of_number(
+        &mut self,
+        func: &'static StdFn,
+        bits: Elem,
+        (operand, at): (Operand, Span),
+        span: Span,
+    ) -> Operand {
         let number = self.settle(operand, at);
         let number = match self.elem_of(number.ty) {
             Some(Elem::Ulint) => retype(number, Types::elem(Elem::Ulint)),

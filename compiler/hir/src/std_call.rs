@@ -112,8 +112,8 @@ impl<'a> Checker<'_, 'a> {
             Meaning::Compare(op, _) if operands.len() == 2 => self.fold_operator(op, operands, span, want),
             Meaning::Move => operands.remove(0).0,
             Meaning::Convert(to) => self.conversion(func, to, operands.remove(0), span),
-            Meaning::FromBcd(number) => self.from_bcd(func, number, operands.remove(0), span),
-            Meaning::ToBcd(bits) => self.to_bcd(func, bits, operands.remove(0), span),
+            Meaning::FromBcd(number) => self.number_of_bcd(func, number, operands.remove(0), span),
+            Meaning::ToBcd(bits) => self.bcd_of_number(func, bits, operands.remove(0), span),
             Meaning::Shift(op) => self.shift(func, op, operands, span, want),
             Meaning::Integral(_) => self.integral(func, operands.remove(0), span, want),
             Meaning::Formula(_) | Meaning::Choose(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
@@ -355,7 +355,12 @@ impl<'a> Checker<'_, 'a> {
                     Some(arg) => arg,
                     None => return Operand::Error,
                 },
-                Some(Type::Fixed(elem)) => self.coerce(operand, at, Types::elem(elem)),
+                Some(Type::Fixed(elem)) => {
+                    let arg = self.coerce(operand, at, Types::elem(elem));
+                    // `MUX_INT_REAL` fixes the type of K; its formula counts in LINT all the same.
+                    let counts = matches!(func.meaning, Meaning::Choose(_)) && elem.is_integer();
+                    if counts { self.with_elem(arg, Elem::Lint, at) } else { arg }
+                }
                 _ => self.coerce(operand, at, var),
             };
             if arg.ty == Types::ERROR {

@@ -247,9 +247,11 @@ impl StdFn {
         self.variadic = Some(Variadic { first, min });
         self
     }
-    /// The same row under a typed name.
-    fn typed(&self, elem: Elem) -> Self {
-        Self { name: format!("{}_{}", self.name, elem.name()), bound: Some(elem), ..self.clone() }
+    /// The same row under its typed names, long names of types included (`GT_TIME_OF_DAY`).
+    fn typed(&self, elem: Elem) -> Vec<Self> {
+        let spellings = convert::spellings(elem).into_iter();
+        let typed = |name| Self { name: format!("{}_{name}", self.name), bound: Some(elem), ..self.clone() };
+        spellings.map(typed).collect()
     }
 }
 
@@ -262,14 +264,15 @@ fn table() -> &'static HashMap<String, StdFn> {
             // Ed. 2 names the typed form of every overloaded function.
             for elem in crate::elem::ALL {
                 if row.generic.contains(elem) {
-                    let typed = row.typed(elem);
-                    table.insert(typed.name.clone(), typed);
+                    for typed in row.typed(elem) {
+                        table.insert(typed.name.clone(), typed);
+                    }
                 }
             }
             table.insert(row.name.clone(), row);
         }
         let fixed = time::rows().into_iter().chain(calendar::rows()).chain(bits::rows()).chain(convert::rows());
-        for row in fixed.chain(pending::rows()) {
+        for row in fixed.chain(select::typed_mux()).chain(time::typed_scaling()).chain(pending::rows()) {
             for output in &row.outputs {
                 let name = format!("${}.{}", row.name, output.name);
                 let meaning = Meaning::Formula(output.formula);
@@ -312,6 +315,9 @@ pub fn to_bcd() -> Option<&'static StdFn> {
 pub fn names() -> impl Iterator<Item = &'static str> {
     table().keys().map(String::as_str).filter(|n| !n.starts_with('$'))
 }
+
+#[cfg(test)]
+mod standard_names;
 
 #[cfg(test)]
 mod tests {

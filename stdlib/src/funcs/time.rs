@@ -29,16 +29,30 @@ pub(super) fn rows() -> Vec<StdFn> {
             fixed(&name("SUB_@TOD_@TOD"), &[("IN1", tod), ("IN2", tod)], t, sub, "The time from IN2 to IN1."),
             fixed(&name("SUB_@DT_@DT"), &[("IN1", dt), ("IN2", dt)], t, sub, "The time from IN2 to IN1."),
         ]);
-        let scaled = |name: String, op, doc| {
-            let params = [("IN1", Type::Fixed(t)), ("IN2", Type::Var)];
-            row(&name, "Ed. 2 table 30", Generic::Num, &params, Meaning::Operator(op), doc).gives(Type::Fixed(t))
-        };
-        let mul = "A duration times a number, to the nearest nanosecond, ties to even.";
-        let div = "A duration divided by a number, to the nearest nanosecond, ties to even.";
-        rows.push(scaled(name("MUL@TIME"), Operator::Mul, mul));
-        rows.push(scaled(name("MUL_@TIME"), Operator::Mul, mul));
-        rows.push(scaled(name("DIV@TIME"), Operator::Div, div));
-        rows.push(scaled(name("DIV_@TIME"), Operator::Div, div));
+        rows.push(scaled(&name("MUL_@TIME"), Operator::Mul, t));
+        rows.push(scaled(&name("DIV_@TIME"), Operator::Div, t));
     }
+    rows.extend(scaling());
     rows
+}
+
+/// MULTIME and DIVTIME, as Ed. 2 spells them.
+fn scaling() -> [StdFn; 2] {
+    [scaled("MULTIME", Operator::Mul, Time), scaled("DIVTIME", Operator::Div, Time)]
+}
+
+/// Their typed forms, after the number: `MULTIME_INT`.
+pub(super) fn typed_scaling() -> Vec<StdFn> {
+    let numbers = || crate::elem::ALL.into_iter().filter(|e| Generic::Num.contains(*e));
+    scaling().iter().flat_map(|row| numbers().flat_map(|elem| row.typed(elem)).collect::<Vec<_>>()).collect()
+}
+
+/// A duration and a number.
+fn scaled(name: &str, op: Operator, t: Elem) -> StdFn {
+    let params = [("IN1", Type::Fixed(t)), ("IN2", Type::Var)];
+    let doc = match op {
+        Operator::Mul => "A duration times a number, to the nearest nanosecond, ties to even.",
+        _ => "A duration divided by a number, to the nearest nanosecond, ties to even.",
+    };
+    row(name, "Ed. 2 table 30", Generic::Num, &params, Meaning::Operator(op), doc).gives(Type::Fixed(t))
 }
