@@ -21,6 +21,7 @@ mod cycles;
 pub mod defs;
 mod edges;
 mod expr;
+mod foreign_code;
 pub mod init;
 mod initial;
 mod lints;
@@ -75,7 +76,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     body_check::check_all(&mut cx);
     cycles::recursion(&mut cx);
     references::spread_addresses(&mut cx.defs);
-    lints::run(&mut cx, diags);
+    lints::run(&mut cx, units, diags);
     let app = config::configure(&mut cx, units, selection);
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }
