@@ -21,7 +21,30 @@ pub fn is_internal(name: &str) -> bool {
 /// Every standard function block: its name and its source, one FUNCTION_BLOCK each, but for the parts of ACTION_CONTROL.
 pub fn blocks() -> &'static [(&'static str, &'static str)] {
     static BLOCKS: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
-        let plain = plain!["SR", "RS", "R_TRIG", "F_TRIG", "CTU", "CTD", "CTUD", "TON", "TOF", "TP"];
+        let plain = plain![
+            "SR",
+            "RS",
+            "SEMA",
+            "R_TRIG",
+            "F_TRIG",
+            "CTU",
+            "CTD",
+            "CTUD",
+            "TON",
+            "TOF",
+            "TP",
+            "RTC",
+            // Ed. 2 annex F.
+            "HYSTERESIS",
+            "LIMITS_ALARM",
+            "INTEGRAL",
+            "DERIVATIVE",
+            "PID",
+            "RAMP",
+            "LAG1",
+            "DELAY",
+            "AVERAGE"
+        ];
         let action_control = [(ACTION_CONTROL, include_str!("../blocks/ACTION_CONTROL.st"))];
         let variants = plain.iter().flat_map(|(name, source)| {
             let types: &[Elem] = match *name {
@@ -67,7 +90,7 @@ mod tests {
             assert_eq!(source.matches(&format!("\nFUNCTION_BLOCK {name}\n")).count(), 1, "{name}");
             assert_eq!(blocks().iter().filter(|(n, _)| n == name).count(), 1, "{name}");
         }
-        assert_eq!(blocks().len(), 10 + 3 * 5 + 3 * 2 + 1);
+        assert_eq!(blocks().len(), 21 + 3 * 5 + 3 * 2 + 1);
     }
 
     #[test]

@@ -217,6 +217,8 @@ pub enum Generic {
     Real,
     /// BOOL and the bit strings.
     Bit,
+    /// BYTE to LWORD: the standard's ANY_BIT without BOOL.
+    BitString,
     Duration,
     Date,
     /// STRING, WSTRING, CHAR, WCHAR.
@@ -235,7 +237,7 @@ impl Generic {
             Generic::Int => "ANY_INT",
             Generic::Signed => "ANY_SIGNED",
             Generic::Real => "ANY_REAL",
-            Generic::Bit => "ANY_BIT",
+            Generic::Bit | Generic::BitString => "ANY_BIT",
             Generic::Duration => "ANY_DURATION",
             Generic::Date => "ANY_DATE",
             Generic::Chars => "ANY_CHARS",
@@ -253,6 +255,7 @@ impl Generic {
             Generic::Signed => elem.family() == Family::Signed,
             Generic::Real => elem.is_real(),
             Generic::Bit => elem == Bool || elem.is_bits(),
+            Generic::BitString => elem.is_bits(),
             Generic::Duration => elem.family() == Family::Duration,
             Generic::Date => matches!(elem.family(), Family::Date | Family::TimeOfDay | Family::DateTime),
             Generic::Chars => elem.family() == Family::Char,

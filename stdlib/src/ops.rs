@@ -8,7 +8,7 @@ use crate::elem::{Elem, Family};
 use crate::emit::{Emit, Val};
 use crate::fault::Fault;
 use crate::prim::{PrimOp, Repr};
-use crate::rt::math;
+use crate::rt::{RtFn, math, time};
 
 /// An operator. Operands have the type `elem` that goes with it, unless said otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -259,12 +259,12 @@ pub fn emit(op: Op, elem: Elem, args: &[Val], e: &mut dyn Emit) -> Val {
             return e.prim(PrimOp::MaxS, repr, &[args[0], negative]);
         }
         Op::Abs => return args[0],
-        Op::TimeMul if real => return scale_time(PrimOp::FMul, elem, args, e),
+        Op::TimeMul if real => return scale_time(&time::MUL_REAL, elem, args, e),
         Op::TimeMul => {
             let factor = resize(elem, Repr::I64, e, args[1]);
             return e.prim(PrimOp::Mul, Repr::I64, &[args[0], factor]);
         }
-        Op::TimeDiv if real => return scale_time(PrimOp::FDiv, elem, args, e),
+        Op::TimeDiv if real => return scale_time(&time::DIV_REAL, elem, args, e),
         Op::TimeDiv => return divide_time(elem, args[0], args[1], e),
     };
     match op {
@@ -309,16 +309,13 @@ fn shift(op: PrimOp, repr: Repr, args: &[Val], e: &mut dyn Emit) -> Val {
     e.prim(op, repr, args)
 }
 
-/// A duration times or divided by a real, in double precision, to the nearest nanosecond, ties to even; saturates.
-fn scale_time(op: PrimOp, elem: Elem, args: &[Val], e: &mut dyn Emit) -> Val {
-    let ns = e.prim(PrimOp::SToF(Repr::F64), Repr::I64, &[args[0]]);
+/// A duration times or divided by a real, to the nearest nanosecond, ties to even; saturates.
+fn scale_time(row: &'static RtFn, elem: Elem, args: &[Val], e: &mut dyn Emit) -> Val {
     let factor = match elem.repr() {
         Repr::F32 => e.prim(PrimOp::FPromote, Repr::F32, &[args[1]]),
         _ => args[1],
     };
-    let x = e.prim(op, Repr::F64, &[ns, factor]);
-    let x = e.prim(PrimOp::FNearest, Repr::F64, &[x]);
-    e.prim(PrimOp::FToS(Repr::I64), Repr::F64, &[x])
+    e.call(row, &[args[0], factor])
 }
 
 /// A duration divided by an integer, to the nearest nanosecond, ties to even. Computed on magnitudes, where unsigned 64 bits

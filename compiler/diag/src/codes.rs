@@ -310,6 +310,15 @@ again:\n\
 x := 1;\n\
 END_PROGRAM\n\
 ```\n";
+    FOREIGN_CODE "W0219" Warning "foreign code is not executed" "\
+A pragma in a body that holds statements of another language (there is a `;` in it, or a `=` that is no `:=`) was meant for another\n\
+compiler. plcc skips it: variables that only such code writes keep their initial values.\n\
+\n\
+```st\n\
+FUNCTION Now : DINT\n\
+{Now = time(NULL);}\n\
+END_FUNCTION\n\
+```\n";
     BAD_EDGE "E0218" Error "R_EDGE or F_EDGE in the wrong place" "\
 A VAR_INPUT of type BOOL may be declared R_EDGE or F_EDGE: inside its POU it is TRUE only in the call that saw the edge. What was before must be remembered, which a FUNCTION_BLOCK or PROGRAM can and a FUNCTION cannot.\n\
 \n\

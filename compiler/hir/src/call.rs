@@ -147,7 +147,11 @@ impl<'a> Checker<'_, 'a> {
             Found::Reported => return Target::Reported,
             _ => {}
         }
-        if let Some(&pou) = self.cx.pous.get(&key) {
+        // A standard block calls standard functions, whatever users call theirs.
+        let builtin = self.cx.builtin_files.contains(&name.span.file);
+        if let Some(&pou) = self.cx.pous.get(&key)
+            && !builtin
+        {
             return match self.cx.defs.pous[pou].kind {
                 PouKind::Function => Target::User(Callee::Function(pou), pou),
                 kind => {

@@ -21,6 +21,7 @@ mod cycles;
 pub mod defs;
 mod edges;
 mod expr;
+mod foreign_code;
 pub mod init;
 mod initial;
 mod lints;
@@ -35,6 +36,7 @@ pub mod rules;
 pub mod shape;
 mod sizes;
 mod std_args;
+mod std_bcd;
 mod std_call;
 mod time_arithmetic;
 pub mod types;
@@ -75,7 +77,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     body_check::check_all(&mut cx);
     cycles::recursion(&mut cx);
     references::spread_addresses(&mut cx.defs);
-    lints::run(&mut cx, diags);
+    lints::run(&mut cx, units, diags);
     let app = config::configure(&mut cx, units, selection);
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }

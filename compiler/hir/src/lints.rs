@@ -5,24 +5,27 @@
 //! warnings that belong to one expression or statement are given where that is checked.
 
 use crate::body::*;
-use crate::cx::Cx;
+use crate::cx::{Cx, Unit};
 use crate::defs::*;
+use crate::foreign_code;
 use crate::types::Type;
 use crate::visit::{self, Use, Visitor};
 use plcc_diag::{Code, Diagnostic, Diagnostics, FileId, Severity, Span, codes};
 use rustc_hash::FxHashSet;
 
 /// Warns about the POUs of the user's files; `before` are the messages of the parser.
-pub(crate) fn run(cx: &mut Cx, before: &Diagnostics) {
+pub(crate) fn run(cx: &mut Cx, units: &[Unit], before: &Diagnostics) {
     let errors = before.iter().chain(cx.diags.iter()).filter(|d| d.severity() == Severity::Error);
     let broken: FxHashSet<FileId> = errors.map(|d| d.primary.span.file).collect();
     let uses = Uses::of(&cx.defs);
-    let mut found = Vec::new();
+    // One mistake, one message: what foreign code should have written is told there.
+    let (mut found, explained) = foreign_code::find(cx, units, &uses.written);
+    found.retain(|d| !broken.contains(&d.primary.span.file));
     for (id, pou) in cx.defs.pous.iter_enumerated() {
         if pou.builtin || broken.contains(&pou.span.file) {
             continue;
         }
-        let lint = Lint { cx, uses: &uses };
+        let lint = Lint { cx, uses: &uses, explained: &explained };
         lint.variables(id, &mut found);
         if let Some(body) = cx.defs.bodies.get(id) {
             unreachable(&body.stmts, &mut found);
@@ -65,6 +68,8 @@ impl Visitor for Uses {
 struct Lint<'c, 'a> {
     cx: &'c Cx<'a>,
     uses: &'c Uses,
+    /// Variables that another message tells about.
+    explained: &'c FxHashSet<VarId>,
 }
 
 impl Lint<'_, '_> {
@@ -72,7 +77,7 @@ impl Lint<'_, '_> {
         for &id in &self.cx.defs.pous[pou].vars {
             let var = &self.cx.defs.vars[id];
             // What a notation adds (a step) has no declaration.
-            if self.cx.var_slots[id].decl.is_none() {
+            if self.cx.var_slots[id].decl.is_none() || self.explained.contains(&id) {
                 continue;
             }
             if let Some(warning) = self.variable(pou, id, var) {

@@ -1,6 +1,7 @@
 //! Calls of standard functions: overloading by the row of the function table (semantics.md \[T3\] \[N1\] \[S4\]).
 
 use crate::body::*;
+use crate::consts::{NotConstant, Reads};
 use crate::expr::*;
 use crate::rules::{self, Implicit};
 use crate::types::{Type as Ty, TypeId, Types};
@@ -111,6 +112,8 @@ impl<'a> Checker<'_, 'a> {
             Meaning::Compare(op, _) if operands.len() == 2 => self.fold_operator(op, operands, span, want),
             Meaning::Move => operands.remove(0).0,
             Meaning::Convert(to) => self.conversion(func, to, operands.remove(0), span),
+            Meaning::FromBcd(number) => self.number_of_bcd(func, number, operands.remove(0), span),
+            Meaning::ToBcd(bits) => self.bcd_of_number(func, bits, operands.remove(0), span),
             Meaning::Shift(op) => self.shift(func, op, operands, span, want),
             Meaning::Integral(_) => self.integral(func, operands.remove(0), span, want),
             Meaning::Formula(_) | Meaning::Choose(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
@@ -352,7 +355,12 @@ impl<'a> Checker<'_, 'a> {
                     Some(arg) => arg,
                     None => return Operand::Error,
                 },
-                Some(Type::Fixed(elem)) => self.coerce(operand, at, Types::elem(elem)),
+                Some(Type::Fixed(elem)) => {
+                    let arg = self.coerce(operand, at, Types::elem(elem));
+                    // `MUX_INT_REAL` fixes the type of K; its formula counts in LINT all the same.
+                    let counts = matches!(func.meaning, Meaning::Choose(_)) && elem.is_integer();
+                    if counts { self.with_elem(arg, Elem::Lint, at) } else { arg }
+                }
                 _ => self.coerce(operand, at, var),
             };
             if arg.ty == Types::ERROR {
@@ -360,8 +368,21 @@ impl<'a> Checker<'_, 'a> {
             }
             args.push(arg);
         }
+        if args.iter().all(|a| matches!(a.kind, ExprKind::Const(_))) {
+            // What would fault with constants is a mistake (semantics.md \[E2\]).
+            let call = Expr { kind: ExprKind::Std { func, elem, args: args.clone() }, ty: var, span };
+            if let Err(why @ NotConstant::Faults(..)) = self.cx.eval(&call, Reads::Constants) {
+                self.not_constant(why, Reads::Constants);
+                return Operand::Error;
+            }
+        }
         let ty = match func.result {
             Type::Fixed(elem) => Types::elem(elem),
+            Type::IntegerOfPlace => {
+                let place = want.and_then(|w| self.elem_of(w)).filter(|e| e.is_integer()).unwrap_or(Elem::Int);
+                let number = Expr { kind: ExprKind::Std { func, elem, args }, ty: Types::elem(Elem::Lint), span };
+                return Operand::Value { expr: self.with_elem(number, place, span), ty: Types::elem(place) };
+            }
             _ => var,
         };
         Operand::value(ExprKind::Std { func, elem, args }, ty, span)
@@ -448,6 +469,12 @@ impl<'a> Checker<'_, 'a> {
             None => match place {
                 Some(place) => place,
                 None if func.generic == Generic::Real => Types::elem(Elem::Lreal),
+                None if func.generic == Generic::BitString => {
+                    let bits = [Elem::Byte, Elem::Word, Elem::Dword, Elem::Lword];
+                    let holds =
+                        |e: &Elem| vars.iter().all(|(o, _)| !matches!(o, Operand::Int(v) if !rules::holds(*e, *v)));
+                    Types::elem(bits.into_iter().find(holds).unwrap_or(Elem::Lword))
+                }
                 None => {
                     let largest = vars.iter().filter_map(|(o, _)| match o {
                         Operand::Int(v) => rules::default_integer(*v),
@@ -480,6 +507,9 @@ impl<'a> Checker<'_, 'a> {
             };
             return Some(Types::elem(real));
         }
+        if codesys && func.generic == Generic::BitString && elem.is_integer() {
+            return Some(Types::elem(crate::operators::bits_of(elem)));
+        }
         if codesys && func.generic == Generic::Num && elem.is_bits() {
             return Some(Types::elem(rules::as_number(elem)));
         }
@@ -487,7 +517,10 @@ impl<'a> Checker<'_, 'a> {
         None
     }
 
-    fn does_not_take(&mut self, func: &StdFn, ty: TypeId, at: Span) {
+    pub fn does_not_take(&mut self, func: &StdFn, ty: TypeId, at: Span) {
+        if ty == Types::ERROR {
+            return;
+        }
         let name = self.cx.type_name(ty);
         self.report(
             Diagnostic::new(codes::WRONG_OPERAND, at, format!("{} does not take {name}", func.name))

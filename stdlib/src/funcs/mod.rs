@@ -4,6 +4,8 @@
 //! operator, a conversion, or a formula over [`Emit`]. Typed names of Ed. 2 (`ADD_INT`) and conversions (`INT_TO_REAL`) are
 //! made from the same rows.
 
+mod bits;
+mod calendar;
 mod convert;
 mod numeric;
 mod pending;
@@ -79,7 +81,8 @@ pub enum Type {
     Fixed(Elem),
     /// Any integer (or, by value, bit string); handed over as LINT.
     Integer,
-    /// An integer type that the place of the call asks for, DINT where nothing does (`TRUNC`).
+    /// An integer type that the place of the call asks for; where nothing does, DINT after rounding (`TRUNC`), else INT
+    /// (`DAY_OF_WEEK`, whose formula gives a LINT).
     IntegerOfPlace,
     /// No result: everything is in the outputs.
     Nothing,
@@ -98,6 +101,10 @@ pub enum Meaning {
     Convert(Elem),
     /// A real to an integer after rounding with this operation.
     Integral(PrimOp),
+    /// A bit string in BCD to an integer.
+    FromBcd(Elem),
+    /// An integer to a bit string in BCD.
+    ToBcd(Elem),
     /// The argument itself.
     Move,
     /// The argument whose number (from 0) the first one gives. The formula is for elementary types.
@@ -240,9 +247,11 @@ impl StdFn {
         self.variadic = Some(Variadic { first, min });
         self
     }
-    /// The same row under a typed name.
-    fn typed(&self, elem: Elem) -> Self {
-        Self { name: format!("{}_{}", self.name, elem.name()), bound: Some(elem), ..self.clone() }
+    /// The same row under its typed names, long names of types included (`GT_TIME_OF_DAY`).
+    fn typed(&self, elem: Elem) -> Vec<Self> {
+        let spellings = convert::spellings(elem).into_iter();
+        let typed = |name| Self { name: format!("{}_{name}", self.name), bound: Some(elem), ..self.clone() };
+        spellings.map(typed).collect()
     }
 }
 
@@ -255,13 +264,15 @@ fn table() -> &'static HashMap<String, StdFn> {
             // Ed. 2 names the typed form of every overloaded function.
             for elem in crate::elem::ALL {
                 if row.generic.contains(elem) {
-                    let typed = row.typed(elem);
-                    table.insert(typed.name.clone(), typed);
+                    for typed in row.typed(elem) {
+                        table.insert(typed.name.clone(), typed);
+                    }
                 }
             }
             table.insert(row.name.clone(), row);
         }
-        for row in time::rows().into_iter().chain(convert::rows()).chain(pending::rows()) {
+        let fixed = time::rows().into_iter().chain(calendar::rows()).chain(bits::rows()).chain(convert::rows());
+        for row in fixed.chain(select::typed_mux()).chain(time::typed_scaling()).chain(pending::rows()) {
             for output in &row.outputs {
                 let name = format!("${}.{}", row.name, output.name);
                 let meaning = Meaning::Formula(output.formula);
@@ -290,10 +301,23 @@ pub fn rounding(op: PrimOp) -> Option<&'static StdFn> {
     })
 }
 
+/// The row that reads the number of a BCD pattern (its type variable) as ULINT; not callable by name.
+pub fn from_bcd() -> Option<&'static StdFn> {
+    table().get("$FROM_BCD")
+}
+
+/// The row that makes a BCD pattern (its type variable) of an ULINT; not callable by name.
+pub fn to_bcd() -> Option<&'static StdFn> {
+    table().get("$TO_BCD")
+}
+
 /// Every name, typed forms included, in no order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     table().keys().map(String::as_str).filter(|n| !n.starts_with('$'))
 }
+
+#[cfg(test)]
+mod standard_names;
 
 #[cfg(test)]
 mod tests {

@@ -169,7 +169,7 @@ pub(super) fn rows() -> Vec<StdFn> {
     rows.push(
         row(
             "IS_VALID",
-            "Ed. 3 table 38",
+            "Ed. 3 table 39",
             Real,
             &one,
             Meaning::Formula(|t, a, e| Some(is_valid(t, a[0], e))),

@@ -4,22 +4,7 @@ use super::*;
 use crate::elem::ALL;
 
 const STRINGS: [&str; 9] = ["LEN", "LEFT", "RIGHT", "MID", "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND"];
-const OTHERS: [&str; 14] = [
-    "SPLIT_DATE",
-    "SPLIT_TOD",
-    "SPLIT_DT",
-    "CONCAT_DATE",
-    "CONCAT_TOD",
-    "CONCAT_DT",
-    "IS_VALID_BCD",
-    "TO_BIG_ENDIAN",
-    "TO_LITTLE_ENDIAN",
-    "FROM_BIG_ENDIAN",
-    "FROM_LITTLE_ENDIAN",
-    "TO_STRING",
-    "TO_WSTRING",
-    "STRING_TO_WSTRING",
-];
+const OTHERS: [&str; 3] = ["TO_STRING", "TO_WSTRING", "STRING_TO_WSTRING"];
 
 pub(super) fn rows() -> Vec<StdFn> {
     let mut names: Vec<String> = STRINGS.iter().chain(&OTHERS).map(|n| n.to_string()).collect();
@@ -28,12 +13,6 @@ pub(super) fn rows() -> Vec<StdFn> {
         for string in ["STRING", "WSTRING"] {
             names.push(format!("{}_TO_{string}", elem.name()));
             names.push(format!("{string}_TO_{}", elem.name()));
-        }
-        if elem.is_bits() {
-            for number in ALL.iter().filter(|e| e.is_integer()) {
-                names.push(format!("{}_BCD_TO_{}", elem.name(), number.name()));
-                names.push(format!("{}_TO_BCD_{}", number.name(), elem.name()));
-            }
         }
     }
     names.into_iter().map(|name| row(&name, "", Generic::Any, &[], Meaning::NotYet, "Not implemented yet.")).collect()

@@ -4,6 +4,7 @@
 use crate::prim::Repr;
 
 pub mod math;
+pub mod time;
 
 /// A pure function on scalars with a native symbol.
 #[derive(Debug)]
@@ -22,5 +23,5 @@ pub struct RtFn {
 
 /// The function with this symbol.
 pub fn find(symbol: &str) -> Option<&'static RtFn> {
-    math::ALL.iter().copied().find(|f| f.symbol == symbol)
+    math::ALL.iter().chain(time::ALL).copied().find(|f| f.symbol == symbol)
 }
