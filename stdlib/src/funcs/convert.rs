@@ -4,7 +4,7 @@ use super::*;
 use crate::elem::ALL;
 
 /// A type's names in conversion functions, long forms included.
-fn spellings(elem: Elem) -> Vec<&'static str> {
+pub(super) fn spellings(elem: Elem) -> Vec<&'static str> {
     match elem {
         Elem::Tod => vec!["TOD", "TIME_OF_DAY"],
         Elem::Ltod => vec!["LTOD", "LTIME_OF_DAY"],

@@ -8,6 +8,7 @@ mod convert;
 mod numeric;
 mod pending;
 mod select;
+mod strings;
 mod time;
 
 use crate::elem::{Elem, Generic};
@@ -15,6 +16,8 @@ use crate::emit::{Emit, Val};
 use crate::prim::PrimOp;
 use std::collections::HashMap;
 use std::sync::OnceLock;
+
+pub use strings::TextOp;
 
 /// A standard function.
 #[derive(Debug, Clone)]
@@ -83,6 +86,8 @@ pub enum Type {
     IntegerOfPlace,
     /// No result: everything is in the outputs.
     Nothing,
+    /// A string of any capacity: a WSTRING if TRUE.
+    Text(bool),
 }
 
 /// What a function means.
@@ -104,6 +109,10 @@ pub enum Meaning {
     Choose(Formula),
     /// Nothing but outputs.
     Outputs,
+    /// An operation on strings.
+    Text(TextOp),
+    /// Any elementary value or string to a string: a WSTRING if TRUE.
+    ToText(bool),
     /// A formula over the values of all arguments; the element is what the type variable stands for.
     Formula(Formula),
     /// The place is laid, the body is not built.
@@ -195,6 +204,7 @@ impl StdFn {
             (Type::Integer, _) => "ANY_INT".into(),
             (Type::IntegerOfPlace, _) => "ANY_INT".into(),
             (Type::Nothing, _) => String::new(),
+            (Type::Text(wide), _) => if wide { "WSTRING" } else { "STRING" }.into(),
         };
         let mut params: Vec<String> = self.params.iter().map(|p| format!("{} : {}", p.name, text(p.ty))).collect();
         if let Some(v) = self.variadic {
@@ -261,7 +271,8 @@ fn table() -> &'static HashMap<String, StdFn> {
             }
             table.insert(row.name.clone(), row);
         }
-        for row in time::rows().into_iter().chain(convert::rows()).chain(pending::rows()) {
+        let fixed = time::rows().into_iter().chain(convert::rows()).chain(strings::rows()).chain(pending::rows());
+        for row in fixed {
             for output in &row.outputs {
                 let name = format!("${}.{}", row.name, output.name);
                 let meaning = Meaning::Formula(output.formula);

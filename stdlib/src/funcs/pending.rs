@@ -3,8 +3,7 @@
 use super::*;
 use crate::elem::ALL;
 
-const STRINGS: [&str; 9] = ["LEN", "LEFT", "RIGHT", "MID", "CONCAT", "INSERT", "DELETE", "REPLACE", "FIND"];
-const OTHERS: [&str; 14] = [
+const OTHERS: [&str; 11] = [
     "SPLIT_DATE",
     "SPLIT_TOD",
     "SPLIT_DT",
@@ -16,19 +15,11 @@ const OTHERS: [&str; 14] = [
     "TO_LITTLE_ENDIAN",
     "FROM_BIG_ENDIAN",
     "FROM_LITTLE_ENDIAN",
-    "TO_STRING",
-    "TO_WSTRING",
-    "STRING_TO_WSTRING",
 ];
 
 pub(super) fn rows() -> Vec<StdFn> {
-    let mut names: Vec<String> = STRINGS.iter().chain(&OTHERS).map(|n| n.to_string()).collect();
-    names.push("WSTRING_TO_STRING".into());
+    let mut names: Vec<String> = OTHERS.iter().map(|n| n.to_string()).collect();
     for elem in ALL {
-        for string in ["STRING", "WSTRING"] {
-            names.push(format!("{}_TO_{string}", elem.name()));
-            names.push(format!("{string}_TO_{}", elem.name()));
-        }
         if elem.is_bits() {
             for number in ALL.iter().filter(|e| e.is_integer()) {
                 names.push(format!("{}_BCD_TO_{}", elem.name(), number.name()));
