@@ -36,6 +36,8 @@ pub mod shape;
 mod sizes;
 mod std_args;
 mod std_call;
+mod text;
+mod text_constant;
 mod time_arithmetic;
 pub mod types;
 pub mod visit;

@@ -36,7 +36,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.program_variable(&instance, *var);
-                self.aggregate_into(value, to.place, to.ty);
+                self.store_aggregate(value, &to);
             }
         }
         let func = self.func(program.pou);
@@ -50,7 +50,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.place(target);
-                self.copy_value(to.place, to.ty, from.place, from.ty);
+                self.copy_aggregate(&to, &from);
             }
         }
     }
