@@ -81,6 +81,10 @@ impl Checker<'_, '_> {
                     elems[i] = Some(number);
                 }
                 Some(elem) => elems[i] = Some(elem),
+                None if self.is_text(ty) => {
+                    let help = "a text is compared with a text: write the number in quotes, or TO_STRING(...)";
+                    return self.no_operator(op.text(), ty, sides[i], help);
+                }
                 None => return self.no_operator(op.text(), ty, sides[i], "only elementary values can be compared"),
             }
         }

@@ -11,6 +11,13 @@ use plcc_stdlib::ops::Op;
 use plcc_stdlib::value::longest_text;
 use plcc_syntax::ast;
 
+/// The name of a conversion to the same type from another one: `INT_TO_TIME` beside `STRING_TO_TIME`.
+fn same_conversion(func: &StdFn, from: &str) -> Option<String> {
+    let (_, to) = func.name.split_once("_TO_").filter(|_| matches!(func.meaning, Meaning::Text(_)))?;
+    let name = format!("{from}_TO_{to}");
+    plcc_stdlib::funcs::find(&name).map(|_| name)
+}
+
 fn keyword(wide: bool) -> &'static str {
     if wide { "WSTRING" } else { "STRING" }
 }
@@ -173,7 +180,8 @@ impl<'a> Checker<'_, 'a> {
             };
             if let Some(wide) = wanted.filter(|wide| *wide != own) {
                 let message = format!("{} needs a {}, this is a {}", func.name, keyword(wide), keyword(own));
-                self.report(Diagnostic::new(codes::TYPE_MISMATCH, at, message));
+                let help = same_conversion(func, keyword(own)).map(|name| format!("write {name}(...)"));
+                self.report(Diagnostic::new(codes::TYPE_MISMATCH, at, message).help_if(help));
                 return Operand::Error;
             }
             if let Some((first, first_at)) = kind.filter(|(first, _)| *first != own) {
@@ -203,12 +211,12 @@ impl<'a> Checker<'_, 'a> {
     fn no_text(&mut self, func: &StdFn, ty: TypeId, at: Span, wide: bool) {
         let Some(elem) = self.elem_of(ty) else { return self.does_not_take(func, ty, at) };
         let name = self.cx.type_name(ty);
+        let help = match same_conversion(func, elem.name()) {
+            Some(name) => format!("write {name}(...)"),
+            None => format!("convert it: {}_TO_{}(...)", elem.name(), keyword(wide)),
+        };
         self.report(
-            Diagnostic::new(codes::WRONG_OPERAND, at, format!("{} does not take {name}", func.name)).help(format!(
-                "convert it: {}_TO_{}(...)",
-                elem.name(),
-                keyword(wide)
-            )),
+            Diagnostic::new(codes::WRONG_OPERAND, at, format!("{} does not take {name}", func.name)).help(help),
         );
     }
 
@@ -249,6 +257,11 @@ impl<'a> Checker<'_, 'a> {
         match (&expr.kind, self.string_kind(to)) {
             (ExprKind::String(_), Some(true)) => return Some("write it in double quotes, as a WSTRING".into()),
             (ExprKind::WString(_), Some(false)) => return Some("write it in single quotes, as a STRING".into()),
+            (ExprKind::String(s), None)
+                if s.len() == 1 && self.elem_of(to).is_some_and(|e| e.is_integer() || e.is_bits()) =>
+            {
+                return Some(format!("the code of this character is 16#{:X}", s[0]));
+            }
             (ExprKind::String(_) | ExprKind::WString(_), _)
                 if self.elem_of(to).is_some_and(|e| e.family() == Family::Char) =>
             {
@@ -287,9 +300,9 @@ impl<'a> Checker<'_, 'a> {
             if v < i64::from(first) || v > i64::from(last) {
                 let message = format!("index {v} is outside the bounds {first}..{last}");
                 let help = if codesys {
-                    "the first character has the index 0"
+                    format!("its characters have the indices 0 to {}, a closing 0 may follow", last - 1)
                 } else {
-                    "the first character has the position 1"
+                    format!("its characters have the positions 1 to {last}")
                 };
                 self.report(
                     Diagnostic::new(codes::CONSTANT_INDEX, e.span, message)

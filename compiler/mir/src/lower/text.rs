@@ -123,7 +123,9 @@ impl FuncLower<'_, '_> {
 
     /// The inverse of [`FuncLower::text_at`], for a type of strings.
     fn access(&mut self, text: &Text, ty: TypeId) -> Access {
-        Access { capacity: Some(self.capacity(text)), ..Self::plain(text.place.clone(), ty) }
+        let mut access = Self::plain(text.place.clone(), ty);
+        access.capacity = Some(self.capacity(text));
+        access
     }
 
     /// Makes a string empty.
