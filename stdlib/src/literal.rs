@@ -4,6 +4,7 @@
 //! is to have. Out: the register value, or what is wrong as data; the words are made where the error is shown.
 
 mod number;
+pub mod prefix;
 mod text;
 mod time;
 

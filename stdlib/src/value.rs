@@ -209,6 +209,33 @@ pub fn write_scalar(out: &mut dyn Write, elem: Elem, raw: u64) -> fmt::Result {
     }
 }
 
+/// Writes a register value as `A_TO_STRING` gives it (semantics.md \[T6\]): as the trace does, but bit strings as decimal
+/// numbers and a character as itself (0: nothing). Never allocates.
+pub fn write_text(out: &mut dyn Write, elem: Elem, raw: u64) -> fmt::Result {
+    match elem.family() {
+        Family::Bits => write!(out, "{raw}"),
+        Family::Char if raw == 0 => Ok(()),
+        // A unit that is no character of its own (half of a pair) is the caller's business.
+        Family::Char => char::from_u32(raw as u32).map_or(Ok(()), |c| out.write_char(c)),
+        _ => write_scalar(out, elem, raw),
+    }
+}
+
+/// The most characters that [`write_text`] writes for a type.
+pub fn longest_text(elem: Elem) -> u32 {
+    match elem.family() {
+        Family::Bool => 5,
+        Family::Signed => [4, 6, 11, 20][elem.bytes().trailing_zeros() as usize],
+        Family::Unsigned | Family::Bits => [3, 5, 10, 20][elem.bytes().trailing_zeros() as usize],
+        Family::Real => 24,
+        Family::Duration => 38,
+        Family::Date => 16,
+        Family::TimeOfDay => 29,
+        Family::DateTime => 33,
+        Family::Char => 1,
+    }
+}
+
 /// The shortest text that reads back to the same value, always with a point or an exponent.
 fn write_real(out: &mut dyn Write, elem: Elem, raw: u64) -> fmt::Result {
     let single = elem == Elem::Real;
@@ -393,6 +420,30 @@ mod tests {
                 let back = read(elem, &text).unwrap_or_else(|e| panic!("{text}: {e}"));
                 assert!(back == raw || is_nan, "{text} {raw:#x} {back:#x}");
             }
+        }
+    }
+
+    #[test]
+    fn no_text_is_longer_than_its_limit() {
+        let mut seed = 0x2545_F491_4F6C_DD1Du64;
+        for elem in crate::elem::ALL {
+            let mut longest = 0;
+            let mut raws = vec![0, 1, elem.repr().mask(), 1 << (elem.repr().bits() - 1), elem.repr().mask() >> 1];
+            let long = [f64::MIN_POSITIVE, f64::MAX, 9_999_999_999_999_998.0, 0.000_012_345_678_901_234_567];
+            for x in long.into_iter().filter(|_| elem.is_real()) {
+                raws.push(if elem == Real { u64::from((-x as f32).to_bits()) } else { (-x).to_bits() });
+            }
+            for n in 0..2000u32 {
+                seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                raws.push((seed >> (n % 60)) & elem.repr().mask());
+            }
+            for raw in raws {
+                let raw = if elem == Bool { raw & 1 } else { raw };
+                let mut text = String::new();
+                write_text(&mut text, elem, raw).unwrap();
+                longest = longest.max(text.chars().count() as u32);
+            }
+            assert!(longest <= longest_text(elem), "{elem:?}: {longest}");
         }
     }
 

@@ -21,9 +21,15 @@ pub enum Ty {
     Enum,
     /// `Small`: INT (-5..20)
     Small,
+    Char,
+    /// STRING or WSTRING; without capacity: a VAR_IN_OUT of any.
+    Text {
+        wide: bool,
+        capacity: Option<u32>,
+    },
 }
 
-const TYPES: [Ty; 18] = [
+const TYPES: [Ty; 23] = [
     Ty::Bool,
     Ty::Bool,
     Ty::Int { bits: 8, signed: true },
@@ -42,7 +48,15 @@ const TYPES: [Ty; 18] = [
     Ty::Lreal,
     Ty::Time,
     Ty::Enum,
+    Ty::Char,
+    Ty::Text { wide: false, capacity: Some(5) },
+    Ty::Text { wide: false, capacity: Some(20) },
+    Ty::Text { wide: false, capacity: Some(150) },
+    Ty::Text { wide: true, capacity: Some(8) },
 ];
+
+/// The shortest capacity in `TYPES`.
+const SHORTEST: u32 = 5;
 
 impl Ty {
     fn name(self) -> &'static str {
@@ -65,6 +79,34 @@ impl Ty {
             Ty::Time => "TIME",
             Ty::Enum => "Color",
             Ty::Small => "Small",
+            Ty::Char => "CHAR",
+            Ty::Text { wide: true, .. } => "WSTRING[8]",
+            Ty::Text { capacity: None, .. } => "STRING",
+            Ty::Text { capacity: Some(5), .. } => "STRING[5]",
+            Ty::Text { capacity: Some(20), .. } => "STRING[20]",
+            Ty::Text { .. } => "STRING[150]",
+        }
+    }
+
+    /// As in the names of conversions.
+    fn keyword(self) -> &'static str {
+        match self {
+            Ty::Text { wide, .. } => {
+                if wide {
+                    "WSTRING"
+                } else {
+                    "STRING"
+                }
+            }
+            other => other.name(),
+        }
+    }
+
+    /// Whether a value of this type can stand where one of the other is wanted: strings of any capacity.
+    fn fits(self, wanted: Ty) -> bool {
+        match (self, wanted) {
+            (Ty::Text { wide: a, .. }, Ty::Text { wide: b, .. }) => a == b,
+            _ => self == wanted,
         }
     }
 }
@@ -88,6 +130,8 @@ struct Function {
     in_out: bool,
     /// Has a VAR_OUTPUT of type INT.
     output: bool,
+    /// Has a VAR_IN_OUT STRING of any capacity.
+    text_in_out: bool,
 }
 
 /// A function block that earlier text declared.
@@ -149,7 +193,7 @@ pub const SHARED: &str = "\
 TYPE
   Color : (Red, Green := 5, Blue);
   Small : INT (-5..20);
-  Pair : STRUCT a : INT := 3; b : DINT; c : BOOL; r : REAL := 0.5; END_STRUCT;
+  Pair : STRUCT a : INT := 3; b : DINT; c : BOOL; r : REAL := 0.5; n : STRING[5] := 'pair'; END_STRUCT;
 END_TYPE
 ";
 
@@ -227,6 +271,7 @@ impl Generator {
                     ("b", Ty::Int { bits: 32, signed: true }),
                     ("c", Ty::Bool),
                     ("r", Ty::Real),
+                    ("n", Ty::Text { wide: false, capacity: Some(5) }),
                 ] {
                     self.vars.push(Var { text: format!("{s}.{f}"), ty, write: true });
                 }
@@ -279,6 +324,11 @@ impl Generator {
             self.line("VAR_IN_OUT io : DINT; END_VAR");
             self.vars.push(Var { text: "io".into(), ty: Ty::Int { bits: 32, signed: true }, write: true });
         }
+        let text_in_out = self.chance(40);
+        if text_in_out {
+            self.line("VAR_IN_OUT text : STRING; END_VAR");
+            self.vars.push(Var { text: "text".into(), ty: Ty::Text { wide: false, capacity: None }, write: true });
+        }
         if output {
             self.line("VAR_OUTPUT o : INT := 4; END_VAR");
             self.vars.push(Var { text: "o".into(), ty: Ty::Int { bits: 16, signed: true }, write: true });
@@ -289,7 +339,7 @@ impl Generator {
         self.line(&format!("{name} := {value};"));
         self.indent = 0;
         self.line("END_FUNCTION");
-        self.functions.push(Function { name, params, result, in_out, output });
+        self.functions.push(Function { name, params, result, in_out, output, text_in_out });
     }
 
     fn block(&mut self, n: usize) {
@@ -402,6 +452,12 @@ impl Generator {
             self.line(&format!("{}.{bit} := {value};", var.text));
             return;
         }
+        if let (Ty::Text { wide: false, capacity }, true) = (var.ty, self.chance(20)) {
+            let index = self.index(1, i64::from(capacity.unwrap_or(SHORTEST)));
+            let value = self.expr(Ty::Char, 2);
+            self.line(&format!("{}[{index}] := {value};", var.text));
+            return;
+        }
         let value = self.expr(var.ty, 4);
         self.line(&format!("{} := {value};", var.text));
     }
@@ -446,7 +502,7 @@ impl Generator {
         }
         for (output, ty) in &block.outputs {
             let targets: Vec<String> =
-                self.vars.iter().filter(|v| v.write && v.ty == *ty).map(|v| v.text.clone()).collect();
+                self.vars.iter().filter(|v| v.write && ty.fits(v.ty)).map(|v| v.text.clone()).collect();
             if !targets.is_empty() && self.chance(25) {
                 let not = if *ty == Ty::Bool && self.chance(30) { "NOT " } else { "" };
                 args.push(format!("{not}{output} => {}", targets[self.rng.usize(0..targets.len())]));
@@ -563,13 +619,37 @@ impl Generator {
             Ty::Time => format!("T#{}ms", self.rng.u32(0..200)),
             Ty::Enum => ["Red", "Color#Green", "Blue"][self.rng.usize(0..3)].into(),
             Ty::Small => self.rng.i64(-5..=20).to_string(),
+            Ty::Char => format!("CHAR#'{}'", self.characters(1, false)),
+            Ty::Text { wide, capacity } => {
+                let longest = capacity.unwrap_or(SHORTEST).min(12);
+                let length = self.rng.u32(0..=longest);
+                let quote = if wide { '"' } else { '\'' };
+                format!("{quote}{}{quote}", self.characters(length, wide))
+            }
         }
+    }
+
+    /// Characters of a literal: few different ones, and beginnings of numbers.
+    fn characters(&mut self, count: u32, wide: bool) -> String {
+        let narrow = ["a", "b", "ab", "1", "7", "-", ".", " ", "e", "x", "$$", "$L", "T#5s"];
+        let all: Vec<&str> = narrow.into_iter().chain(if wide { ["€", "$00E4"] } else { ["ä", "$FF"] }).collect();
+        let mut text = String::new();
+        let mut left = count as usize;
+        while left > 0 {
+            let next = all[self.rng.usize(0..all.len())];
+            let length = if next.starts_with('$') { 1 } else { next.chars().count() };
+            if length <= left {
+                text.push_str(next);
+                left -= length;
+            }
+        }
+        text
     }
 
     /// A variable of exactly this type.
     fn variable(&mut self, ty: Ty) -> Option<String> {
-        let list: Vec<String> = self.vars.iter().filter(|v| v.ty == ty).map(|v| v.text.clone()).collect();
-        let array: Vec<_> = self.arrays.iter().filter(|a| a.3 == ty).cloned().collect();
+        let list: Vec<String> = self.vars.iter().filter(|v| v.ty.fits(ty)).map(|v| v.text.clone()).collect();
+        let array: Vec<_> = self.arrays.iter().filter(|a| a.3.fits(ty)).cloned().collect();
         if !array.is_empty() && self.chance(30) {
             let (name, low, high, _) = array[self.rng.usize(0..array.len())].clone();
             let index = self.index(low, high);
@@ -612,6 +692,8 @@ impl Generator {
                 4 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.expr(ty, d), self.expr(ty, d)),
                 _ => format!("DINT_TO_TIME({})", self.expr(Ty::Int { bits: 32, signed: true }, d)),
             },
+            Ty::Char => self.char_expr(d),
+            Ty::Text { wide, .. } => self.text_expr(ty, wide, d),
             Ty::Enum => match self.rng.u32(0..3) {
                 0 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.leaf(ty), self.leaf(ty)),
                 _ => self.leaf(ty),
@@ -637,7 +719,7 @@ impl Generator {
             4..=7 => {
                 let ty = loop {
                     let ty = self.pick_type();
-                    if matches!(ty, Ty::Int { .. } | Ty::Real | Ty::Lreal | Ty::Time) {
+                    if matches!(ty, Ty::Int { .. } | Ty::Real | Ty::Lreal | Ty::Time | Ty::Char | Ty::Text { .. }) {
                         break ty;
                     }
                 };
@@ -660,6 +742,14 @@ impl Generator {
 
     fn int_expr(&mut self, ty: Ty, d: u32) -> String {
         let name = ty.name();
+        if ty == (Ty::Int { bits: 16, signed: true }) && self.chance(20) {
+            let text = self.any_text();
+            return if self.rng.bool() {
+                format!("LEN({})", self.expr(text, d))
+            } else {
+                format!("FIND({}, {})", self.expr(text, d), self.expr(text, d))
+            };
+        }
         match self.rng.u32(0..16) {
             0..=4 => {
                 let op = ["+", "-", "*"][self.rng.usize(0..3)];
@@ -690,7 +780,88 @@ impl Generator {
                         break from;
                     }
                 };
-                format!("{}_TO_{name}({})", from.name(), self.expr(from, d))
+                format!("{}_TO_{name}({})", from.keyword(), self.expr(from, d))
+            }
+        }
+    }
+
+    fn any_text(&mut self) -> Ty {
+        match self.rng.u32(0..4) {
+            0 => Ty::Text { wide: true, capacity: Some(8) },
+            _ => Ty::Text { wide: false, capacity: Some(20) },
+        }
+    }
+
+    fn char_expr(&mut self, d: u32) -> String {
+        match self.rng.u32(0..6) {
+            0 | 1 => {
+                let text = Ty::Text { wide: false, capacity: None };
+                match self.variable(text) {
+                    Some(text) => format!("{text}[{}]", self.index(1, i64::from(SHORTEST))),
+                    None => self.leaf(Ty::Char),
+                }
+            }
+            2 => format!("BYTE_TO_CHAR({})", self.expr(Ty::Bits(8), d)),
+            3 => format!("STRING_TO_CHAR({})", self.expr(Ty::Text { wide: false, capacity: Some(20) }, d)),
+            4 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.expr(Ty::Char, d), self.leaf(Ty::Char)),
+            _ => self.leaf(Ty::Char),
+        }
+    }
+
+    /// A length or position, mostly near those that matter.
+    fn position(&mut self, d: u32) -> String {
+        match self.rng.u32(0..4) {
+            0 => self.expr(Ty::Int { bits: 16, signed: true }, d.min(2)),
+            1 => self.expr(Ty::Int { bits: 64, signed: true }, d.min(1)),
+            _ => self.rng.i64(-1..9).to_string(),
+        }
+    }
+
+    fn text_expr(&mut self, ty: Ty, wide: bool, d: u32) -> String {
+        let keyword = ty.keyword();
+        match self.rng.u32(0..16) {
+            0..=3 => {
+                let mut parts = vec![self.expr(ty, d), self.expr(ty, d)];
+                if self.chance(30) {
+                    parts.push(self.expr(ty, d));
+                }
+                if !wide && self.chance(20) {
+                    parts.push(self.expr(Ty::Char, d));
+                }
+                format!("CONCAT({})", parts.join(", "))
+            }
+            4 => format!("LEFT({}, {})", self.expr(ty, d), self.position(d)),
+            5 => format!("RIGHT({}, {})", self.expr(ty, d), self.position(d)),
+            6 => format!("MID({}, {}, {})", self.expr(ty, d), self.position(d), self.position(d)),
+            7 => format!("INSERT({}, {}, {})", self.expr(ty, d), self.expr(ty, d), self.position(d)),
+            8 => format!("DELETE({}, {}, {})", self.expr(ty, d), self.position(d), self.position(d)),
+            9 => {
+                let (a, b) = (self.expr(ty, d), self.expr(ty, d));
+                format!("REPLACE({a}, {b}, {}, {})", self.position(d), self.position(d))
+            }
+            10 => format!("SEL({}, {}, {})", self.expr(Ty::Bool, d), self.expr(ty, d), self.expr(ty, d)),
+            11 => match self.rng.u32(0..3) {
+                0 => format!("MAX({}, {}, {})", self.expr(ty, d), self.expr(ty, d), self.leaf(ty)),
+                1 => format!("MIN({}, {})", self.expr(ty, d), self.expr(ty, d)),
+                _ => format!("LIMIT({}, {}, {})", self.leaf(ty), self.expr(ty, d), self.leaf(ty)),
+            },
+            12 => {
+                let k = self.expr(Ty::Int { bits: 16, signed: true }, 1);
+                format!("MUX({k}, {}, {}, {})", self.expr(ty, d), self.leaf(ty), self.leaf(ty))
+            }
+            13 => {
+                let other = Ty::Text { wide: !wide, capacity: Some(8) };
+                format!("{}_TO_{keyword}({})", other.keyword(), self.expr(other, d))
+            }
+            _ => {
+                let from = loop {
+                    let from = self.pick_type();
+                    if !matches!(from, Ty::Enum | Ty::Text { .. }) {
+                        break from;
+                    }
+                };
+                let name = if self.rng.bool() { "TO".to_string() } else { format!("{}_TO", from.name()) };
+                format!("{name}_{keyword}({})", self.expr(from, d))
             }
         }
     }
@@ -730,6 +901,10 @@ impl Generator {
                 format!("{f}({})", self.expr(ty, d))
             }
             7 => format!("LIMIT({}, {}, {})", self.literal(ty), self.expr(ty, d), self.literal(ty)),
+            8 if self.chance(50) => {
+                let text = self.any_text();
+                format!("{}_TO_{}({})", text.keyword(), ty.name(), self.expr(text, d))
+            }
             _ => {
                 let from = Ty::Int { bits: [8, 16, 32, 64][self.rng.usize(0..4)], signed: self.rng.bool() };
                 format!("{}_TO_{}({})", from.name(), ty.name(), self.expr(from, d))
@@ -738,7 +913,7 @@ impl Generator {
     }
 
     fn call_function(&mut self, ty: Ty, depth: u32) -> Option<String> {
-        let fitting: Vec<Function> = self.functions.iter().filter(|f| f.result == ty).cloned().collect();
+        let fitting: Vec<Function> = self.functions.iter().filter(|f| f.result.fits(ty)).cloned().collect();
         if fitting.is_empty() {
             return None;
         }
@@ -752,6 +927,15 @@ impl Generator {
             let dint = Ty::Int { bits: 32, signed: true };
             let var = self.vars.iter().find(|v| v.write && v.ty == dint)?.text.clone();
             args.push(format!("io := {var}"));
+        }
+        if f.text_in_out {
+            let text = Ty::Text { wide: false, capacity: None };
+            let all: Vec<String> =
+                self.vars.iter().filter(|v| v.write && v.ty.fits(text)).map(|v| v.text.clone()).collect();
+            if all.is_empty() {
+                return None;
+            }
+            args.push(format!("text := {}", all[self.rng.usize(0..all.len())]));
         }
         if f.output {
             let int = Ty::Int { bits: 16, signed: true };

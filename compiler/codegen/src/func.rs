@@ -12,11 +12,14 @@ use cranelift_codegen::isa::{CallConv, TargetFrontendConfig};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch};
 use index_vec::IndexVec;
 use plcc_mir::dominators::Dominators;
-use plcc_mir::ir::{Block, BlockId, Cond, Func, FuncId, Inst, Place, Program, SourceId, Target, Term, ValueId};
+use plcc_mir::ir::{
+    Base, Block, BlockId, Cond, Func, FuncId, Inst, Place, Program, SourceId, Target, Term, TextPlace, ValueId,
+};
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::Repr;
 use plcc_stdlib::region::{DEADLINE_FLAG, FAULT_CODE, FAULT_INSTANCE, FAULT_OPERANDS, FAULT_SOURCE};
 use plcc_stdlib::rt::RtFn;
+use plcc_stdlib::rt::strings::TextFn;
 use rustc_hash::FxHashMap;
 
 /// Up to so many labels a chain of comparisons beats a jump table.
@@ -232,7 +235,11 @@ impl<'a, 'f> Translator<'a, 'f> {
             Inst::Call { dst, callee, instance, args, status, .. } => {
                 self.call(*dst, *callee, instance.as_ref(), args, *status);
             }
-            Inst::CallRt { dst, func, args } => self.call_rt(*dst, func, args),
+            Inst::CallRt { dst, func, args } => {
+                let args = self.values(args);
+                self.call_rt(*dst, func.symbol, &args);
+            }
+            Inst::CallText { dst, func, texts, args } => self.call_text(*dst, func, texts, args),
             Inst::Check { cond, fault, operands, source } => self.check(*cond, *fault, operands, *source),
             Inst::Poll { source } => {
                 // Keeps the load where it is, whatever the code generator's level of optimisation.
@@ -401,21 +408,59 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.b.switch_to_block(next);
     }
 
-    fn call_rt(&mut self, dst: ValueId, func: &'static RtFn, args: &[ValueId]) {
-        let reference = match self.rt_callees.get(func.symbol) {
+    fn call_rt(&mut self, dst: ValueId, symbol: &'static str, args: &[Value]) {
+        let reference = match self.rt_callees.get(symbol) {
             Some(reference) => *reference,
             None => {
-                let Some((id, signature)) = self.env.rt.get(func.symbol) else {
-                    plcc_diag::bug!("`{}` was not declared", func.symbol)
+                let Some((id, signature)) = self.env.rt.get(symbol) else {
+                    plcc_diag::bug!("`{symbol}` was not declared")
                 };
                 let reference = import(self.b.func, *id, signature.clone(), false);
-                self.rt_callees.insert(func.symbol, reference);
+                self.rt_callees.insert(symbol, reference);
                 reference
             }
         };
-        let args = self.values(args);
-        let inst = self.b.ins().call(reference, &args);
+        let inst = self.b.ins().call(reference, args);
         self.values[dst] = Some(self.b.inst_results(inst)[0]);
+    }
+
+    fn call_text(&mut self, dst: ValueId, func: &'static TextFn, texts: &[TextPlace], args: &[ValueId]) {
+        let size = self.b.ins().iconst(types::I32, i64::from(self.env.program.region_bytes));
+        let mut values = vec![self.region, size];
+        for text in texts {
+            values.push(self.packed(text));
+        }
+        values.extend(self.values(args));
+        self.call_rt(dst, func.symbol, &values);
+    }
+
+    /// A string as `Text::pack` makes it: the capacity above the region offset.
+    fn packed(&mut self, text: &TextPlace) -> Value {
+        let capacity = self.value(text.capacity);
+        let known = self.constant(capacity).map(|capacity| (capacity & 0xFFFF_FFFF) << 32);
+        let fixed = text.place.base == Base::Region && text.place.index.is_empty();
+        if let (true, Some(capacity)) = (fixed, known) {
+            return self.b.ins().iconst(types::I64, capacity | text.place.offset);
+        }
+        let pointer = self.pointer(&text.place);
+        let offset = self.b.ins().isub(pointer, self.region);
+        let above = match known {
+            Some(capacity) => self.b.ins().iconst(types::I64, capacity),
+            None => {
+                let wide = self.b.ins().uextend(types::I64, capacity);
+                self.b.ins().ishl_imm_u(wide, 32)
+            }
+        };
+        self.b.ins().bor(above, offset)
+    }
+
+    /// The number that a value is, if that stands where it is made.
+    fn constant(&self, value: Value) -> Option<i64> {
+        let inst = self.b.func.dfg.value_def(value).inst()?;
+        match self.b.func.dfg.insts[inst] {
+            ir::InstructionData::UnaryImm { opcode: ir::Opcode::Iconst, imm } => Some(imm.bits()),
+            _ => None,
+        }
     }
 
     fn term(&mut self, term: &Term) {
@@ -499,6 +544,17 @@ fn tail(b: &mut FunctionBuilder, tails: &mut Tails, params: &[ir::Type]) -> ir::
             block
         }
     }
+}
+
+/// The signature of a body of the standard library that works on strings.
+pub fn text_signature(func: &TextFn, isa: &dyn cranelift_codegen::isa::TargetIsa, call_conv: CallConv) -> Signature {
+    let mut signature = Signature::new(call_conv);
+    signature.params.push(AbiParam::new(types::I64));
+    let extension = crate::target::c_extension(isa, Repr::I32);
+    signature.params.push(AbiParam { extension, ..AbiParam::new(types::I32) });
+    signature.params.extend(std::iter::repeat_n(AbiParam::new(types::I64), func.texts + func.params));
+    signature.returns.push(AbiParam::new(types::I64));
+    signature
 }
 
 /// The signature of a body of the standard library.

@@ -1,7 +1,7 @@
 //! Code in the memory of this process.
 
 use crate::CodegenError;
-use crate::module::{Entries, Extras, rt_functions};
+use crate::module::{Entries, Extras, rt_functions, text_functions};
 use crate::target;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use plcc_mir::ir::Program;
@@ -37,6 +37,9 @@ impl fmt::Debug for JitCode {
 pub fn compile(program: &Program) -> Result<JitCode, CodegenError> {
     let mut builder = JITBuilder::with_isa(target::host()?, cranelift_module::default_libcall_names());
     for func in rt_functions(program) {
+        builder.symbol(func.symbol, (func.address)());
+    }
+    for func in text_functions(program) {
         builder.symbol(func.symbol, (func.address)());
     }
     // One piece of address space, so that near calls and data references reach.

@@ -4,7 +4,7 @@
 use crate::CodegenError;
 use crate::compile::{Job, compile_all};
 use crate::entry;
-use crate::func::{Env, rt_signature, translate};
+use crate::func::{Env, rt_signature, text_signature, translate};
 use crate::object::Var;
 use crate::shape::{shapes, signature};
 use cranelift_codegen::Context;
@@ -13,6 +13,7 @@ use cranelift_module::{FuncId, Linkage, Module};
 use index_vec::IndexVec;
 use plcc_mir::ir::{Inst, Program};
 use plcc_stdlib::rt::RtFn;
+use plcc_stdlib::rt::strings::TextFn;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
@@ -61,6 +62,10 @@ pub fn declare<'a>(
         let signature = rt_signature(func, module.isa(), config.default_call_conv);
         rt.insert(func.symbol, (module.declare_function(func.symbol, Linkage::Import, &signature)?, signature));
     }
+    for func in text_functions(program) {
+        let signature = text_signature(func, module.isa(), config.default_call_conv);
+        rt.insert(func.symbol, (module.declare_function(func.symbol, Linkage::Import, &signature)?, signature));
+    }
     let env = Env { program, config, shapes, ids, rt };
     let (made, entries) = entry::declare(module, &env, extras)?;
     Ok(Declared { env, made, entries })
@@ -98,6 +103,17 @@ pub fn rt_functions(program: &Program) -> Vec<&'static RtFn> {
     let mut found: BTreeMap<&str, &'static RtFn> = BTreeMap::new();
     for inst in program.funcs.iter().flat_map(|f| &f.blocks).flat_map(|b| &b.insts) {
         if let Inst::CallRt { func, .. } = inst {
+            found.insert(func.symbol, func);
+        }
+    }
+    found.into_values().collect()
+}
+
+/// The same for bodies that work on strings.
+pub fn text_functions(program: &Program) -> Vec<&'static TextFn> {
+    let mut found: BTreeMap<&str, &'static TextFn> = BTreeMap::new();
+    for inst in program.funcs.iter().flat_map(|f| &f.blocks).flat_map(|b| &b.insts) {
+        if let Inst::CallText { func, .. } = inst {
             found.insert(func.symbol, func);
         }
     }

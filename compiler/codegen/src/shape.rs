@@ -50,6 +50,7 @@ fn shape(func: &Func, shapes: &IndexVec<FuncId, Shape>) -> Shape {
                 shape.deadline |= callee.deadline;
                 shape.status |= if status.is_some() { callee.deadline } else { callee.status };
             }
+            Inst::CallText { texts, .. } => shape.frame |= texts.iter().any(|text| in_frame(&text.place)),
             Inst::Check { fault, .. } => {
                 shape.status = true;
                 shape.deadline |= *fault == Fault::Deadline;

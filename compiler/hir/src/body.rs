@@ -4,7 +4,7 @@ use crate::defs::{PouId, VarId};
 use crate::types::TypeId;
 use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
-use plcc_stdlib::funcs::StdFn;
+use plcc_stdlib::funcs::{StdFn, TextOp};
 use plcc_stdlib::ops::Op;
 
 index_vec::define_index_type! {
@@ -124,7 +124,9 @@ impl Expr {
         match &self.kind {
             ExprKind::Call(_) => true,
             ExprKind::Read(place) | ExprKind::RefOf(place) => place.calls(),
-            ExprKind::Op(_, _, list) | ExprKind::Std { args: list, .. } => list.iter().any(Expr::calls),
+            ExprKind::Op(_, _, list) | ExprKind::Std { args: list, .. } | ExprKind::Text { args: list, .. } => {
+                list.iter().any(Expr::calls)
+            }
             ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => a.calls() || b.calls(),
             ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) | ExprKind::RangeCheck { value: inner, .. } => {
                 inner.calls()
@@ -150,6 +152,7 @@ impl Place {
             Step::Index(indices, _) => indices.iter().any(Expr::calls),
             // The bounds are variables.
             Step::OpenIndex(indices, _) => indices.iter().any(|i| i.value.calls()),
+            Step::Character { index, .. } => index.calls(),
             Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
         })
     }
@@ -208,6 +211,16 @@ pub enum ExprKind {
         /// At least one.
         choices: Vec<Expr>,
     },
+    /// An operation on strings or between values and text. Arguments are strings of one kind (of any capacity), LINTs for
+    /// lengths and positions, BOOL for SEL.
+    Text {
+        /// Which.
+        op: TextOp,
+        /// On WSTRINGs. Of a conversion between the kinds: the result.
+        wide: bool,
+        /// In the order of the function's parameters.
+        args: Vec<Expr>,
+    },
     /// `REF(x)`, `ADR(x)`: an I32 region offset.
     RefOf(Place),
     /// A temporary.
@@ -253,6 +266,15 @@ pub enum Step {
     Index(Vec<Expr>, String),
     /// Elements of an ARRAY [*]: an index and the actual bounds per dimension; the text is the array's name.
     OpenIndex(Vec<OpenIndex>, String),
+    /// One character of a string; checked against its capacity.
+    Character {
+        /// Position, a LINT.
+        index: Box<Expr>,
+        /// The position of the first character: 1, in profile codesys 0 (there the closing 0 can be reached too).
+        first: u8,
+        /// The string's name for fault messages.
+        name: String,
+    },
     /// Follows a reference that lies here.
     Deref,
     /// Bit n of an integer or bit string.

@@ -512,7 +512,11 @@ impl<'a> Checker<'_, 'a> {
             format!("VAR_IN_OUT `{name}` is {want}, this variable is {have}"),
         )
         .also(span, "the parameter is declared here")
-        .help("a VAR_IN_OUT is the variable itself: both must have the same type");
+        .help(if self.is_text(ty) && self.text_kind(ty) == self.text_kind(place.ty) {
+            "declare both with the same length, or the parameter as STRING without length, which takes any"
+        } else {
+            "a VAR_IN_OUT is the variable itself: both must have the same type"
+        });
         if lax {
             return self.codesys_only(place.span, codes::LAX_CONVERSION, d);
         }

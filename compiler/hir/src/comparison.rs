@@ -81,6 +81,10 @@ impl Checker<'_, '_> {
                     elems[i] = Some(number);
                 }
                 Some(elem) => elems[i] = Some(elem),
+                None if self.is_text(ty) => {
+                    let help = "a text is compared with a text: write the number in quotes, or TO_STRING(...)";
+                    return self.no_operator(op.text(), ty, sides[i], help);
+                }
                 None => return self.no_operator(op.text(), ty, sides[i], "only elementary values can be compared"),
             }
         }
@@ -142,8 +146,9 @@ impl Checker<'_, '_> {
         let types = &self.cx.defs.types;
         let elem = match (types.get(x), types.get(y)) {
             (Type::Enum(i), Type::Enum(j)) if i == j => self.cx.defs.enums[*i].base,
-            (Type::String { .. } | Type::AnyString { .. }, Type::String { .. } | Type::AnyString { .. }) => {
-                return Some(self.not_yet(span, "comparing strings"));
+            _ if self.is_text(x) || self.is_text(y) => {
+                let (a, b) = pair(a, b)?;
+                return Some(self.text_comparison(op, [(a, x), (b, y)], span));
             }
             _ => return None,
         };

@@ -67,10 +67,8 @@ impl<'a> Checker<'_, 'a> {
         if expr.ty == Types::ERROR {
             return Init::Default;
         }
-        match &expr.kind {
-            ExprKind::String(s) => return Init::String(self.cut(s, ty)),
-            ExprKind::WString(s) => return Init::WString(self.cut(s, ty)),
-            _ => {}
+        if self.is_text(ty) {
+            return self.const_text(&expr, ty);
         }
         if self.elem_of(ty).is_none()
             && let ExprKind::Read(place) = &expr.kind
@@ -85,6 +83,22 @@ impl<'a> Checker<'_, 'a> {
         }
         match self.cx.eval(&expr, Reads::Initials) {
             Ok(raw) => Init::Scalar(raw),
+            Err(why) => {
+                self.not_constant(why, Reads::Initials);
+                Init::Default
+            }
+        }
+    }
+
+    fn const_text(&mut self, expr: &Expr, ty: TypeId) -> Init {
+        match self.cx.eval_units(expr, Reads::Initials) {
+            Ok(units) if matches!(self.cx.defs.types.get(ty), Type::String { wide: true, .. }) => {
+                Init::WString(self.cut(&units, ty))
+            }
+            Ok(units) => {
+                let characters: Vec<u8> = units.into_iter().map(|unit| unit as u8).collect();
+                Init::String(self.cut(&characters, ty))
+            }
             Err(why) => {
                 self.not_constant(why, Reads::Initials);
                 Init::Default

@@ -5,6 +5,7 @@ use crate::body::*;
 use crate::cx::Cx;
 use crate::defs::*;
 use crate::init::Init;
+use crate::text_constant::Value;
 use crate::types::{Type, TypeId};
 use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
@@ -75,6 +76,10 @@ impl Cx<'_> {
                 let args = args.iter().map(|a| self.eval(a, reads)).collect::<Result<Vec<_>, _>>()?;
                 formula(fold(&args, |f, v| func.emit(*elem, v, f)))
             }
+            ExprKind::Text { op, wide, args } => match self.eval_text(*op, *wide, args, reads)? {
+                Value::Scalar(raw) => Ok(raw),
+                Value::Text(_) => Err(NotConstant::Varies(e.span)),
+            },
             ExprKind::AndThen(a, b) => {
                 if self.eval(a, reads)? == 0 {
                     Ok(0)

@@ -162,7 +162,8 @@ impl<'c, 'a> Checker<'c, 'a> {
                 error_expr(span)
             }
             (Type::Enum(_), _) | (_, Type::Enum(_)) => self.mismatch(expr, ty, target),
-            (Type::String { wide: a, .. }, Type::String { wide: b, .. }) if a == b => {
+            (_, Type::String { wide, .. } | Type::AnyString { wide }) if self.text_kind(ty) == Some(wide) => {
+                let expr = self.as_text(expr, wide);
                 self.check_string_fits(&expr, target);
                 expr
             }
@@ -329,6 +330,7 @@ impl<'c, 'a> Checker<'c, 'a> {
         let types = &self.cx.defs.types;
         match (types.get(from), types.get(to)) {
             (Type::Elem(a), Type::Elem(b)) => d = d.help(conversion_help(*a, *b)),
+            _ if self.is_text(from) || self.is_text(to) => d = d.help_if(self.text_help(&expr, from, to)),
             (Type::Enum(_), Type::Enum(_)) => d = d.help("values of different enumerations do not mix"),
             (Type::Enum(id), Type::Elem(b)) => {
                 let base = self.cx.defs.enums[*id].base;

@@ -38,6 +38,8 @@ mod sizes;
 mod std_args;
 mod std_bcd;
 mod std_call;
+mod text;
+mod text_constant;
 mod time_arithmetic;
 pub mod types;
 mod var_config;

@@ -126,6 +126,7 @@ impl<'a> Checker<'_, 'a> {
 
     pub fn no_operator(&mut self, op: &str, ty: TypeId, span: Span, help: &str) -> Operand {
         if ty != Types::ERROR {
+            let help = if self.is_text(ty) && op == "+" { "CONCAT(...) joins texts" } else { help };
             let d = self.wrong_operand(op, ty, span, help);
             self.report(d);
         }

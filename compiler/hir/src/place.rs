@@ -299,10 +299,7 @@ impl<'a> Checker<'_, 'a> {
                 return self.open_index(base, elem, indices, span);
             }
             Type::AnyArray { dims, elem } => (vec![(i64::MIN, i64::MAX); dims], elem),
-            Type::String { .. } | Type::AnyString { .. } => {
-                self.not_yet(span, "access to single characters of a string");
-                return None;
-            }
+            Type::String { .. } | Type::AnyString { .. } => return self.character(base, indices, span),
             Type::Error => return None,
             _ => {
                 let ty = self.cx.type_name(base.ty);
@@ -377,7 +374,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// An index as LINT: integers, enumerations' numbers, bit strings by value (warning in strict).
-    fn index_value(&mut self, operand: Operand, span: Span) -> Option<Expr> {
+    pub fn index_value(&mut self, operand: Operand, span: Span) -> Option<Expr> {
         let ty = self.static_type(&operand).unwrap_or(Types::elem(Elem::Lreal));
         let expr = self.settle(operand, span);
         match self.elem_of(ty) {
@@ -567,6 +564,7 @@ impl<'a> Checker<'_, 'a> {
                         _ => return text,
                     }
                 }
+                Step::Character { .. } => text.push_str("[...]"),
                 Step::Deref => {
                     text.push('^');
                     match self.cx.defs.types.get(ty) {

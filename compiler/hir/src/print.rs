@@ -230,6 +230,10 @@ impl Printer<'_> {
             ExprKind::Choose { selector, choices } => {
                 format!("CHOOSE({}: {})", self.expr(selector), self.args(choices))
             }
+            ExprKind::Text { op, wide, args } => {
+                let name = format!("{op:?}").to_uppercase();
+                format!("{name}_{}({})", if *wide { "WSTRING" } else { "STRING" }, self.args(args))
+            }
             ExprKind::RefOf(place) => format!("REF({})", self.place(place)),
             ExprKind::Temp(temp) => format!("t{}", temp.index()),
             ExprKind::Error => "?".into(),
@@ -319,6 +323,9 @@ impl Printer<'_> {
                 }
                 Step::Index(indices, _) => {
                     let _ = write!(text, "[{}]", self.args(indices));
+                }
+                Step::Character { index, first, .. } => {
+                    let _ = write!(text, "[{} from {first}]", self.expr(index));
                 }
                 Step::Deref => text.push('^'),
                 Step::Bit(n) => {

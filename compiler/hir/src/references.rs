@@ -57,6 +57,11 @@ impl<'a> Checker<'_, 'a> {
         // The address of an array without fixed bounds is that of its first element.
         let target = match self.cx.defs.types.get(place.ty) {
             Type::AnyArray { elem, .. } => *elem,
+            // That of a string without fixed capacity is taken as one of the default capacity.
+            Type::AnyString { wide } => {
+                let (wide, capacity) = (*wide, crate::resolve::DEFAULT_STRING);
+                self.cx.defs.types.intern(Type::String { wide, capacity })
+            }
             _ => place.ty,
         };
         let ty = self.cx.defs.types.intern(Type::Ref { pointer, target });
@@ -95,7 +100,7 @@ impl<'a> Checker<'_, 'a> {
                 Step::Field(_) => true,
                 Step::Member(var) => self.cx.defs.vars[*var].section != Section::InOut,
                 Step::Index(indices, _) => indices.iter().all(|i| matches!(i.kind, ExprKind::Const(_))),
-                Step::OpenIndex(..) | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
+                Step::OpenIndex(..) | Step::Character { .. } | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
             })
     }
 

@@ -13,6 +13,8 @@ use rustc_hash::FxHashMap;
 
 /// Capacity of a STRING without length (semantics.md \[T8\]).
 pub const DEFAULT_STRING: u32 = 80;
+/// No string has more characters.
+pub const LONGEST_STRING: u32 = 1 << 20;
 
 /// More elements than any region could hold.
 const MAX_ELEMENTS: i128 = 1 << 31;
@@ -44,7 +46,7 @@ impl<'a> Cx<'a> {
                     None => i128::from(DEFAULT_STRING),
                     Some(length) => self.const_integer(length, scope).unwrap_or(i128::from(DEFAULT_STRING)),
                 };
-                if !(1..=1 << 20).contains(&capacity) {
+                if !(1..=i128::from(LONGEST_STRING)).contains(&capacity) {
                     self.push(
                         Diagnostic::new(
                             codes::BAD_BOUNDS,

@@ -215,16 +215,22 @@ impl Shapes {
 
     /// What a variable takes where it is declared: a VAR_IN_OUT holds a reference.
     fn stored(&mut self, defs: &Defs, var: &Var) -> Shape {
-        if var.section == Section::InOut { IN_OUT } else { self.work_out(defs, var.ty) }
+        if var.section == Section::InOut { in_out(defs, var.ty) } else { self.work_out(defs, var.ty) }
     }
 
     /// The shape of a variable where it is declared.
     pub fn of_var(&self, defs: &Defs, var: &Var) -> Shape {
-        if var.section == Section::InOut { IN_OUT } else { self.of(defs, var.ty) }
+        if var.section == Section::InOut { in_out(defs, var.ty) } else { self.of(defs, var.ty) }
     }
 }
 
 const IN_OUT: Shape = Shape { bytes: 4, align: 4, references: true, ..Shape::EMPTY };
+
+/// The reference that a VAR_IN_OUT holds; for a string of any capacity (\[S4\]) that capacity lies behind it.
+fn in_out(defs: &Defs, ty: TypeId) -> Shape {
+    let bytes = if matches!(defs.types[ty], Type::AnyString { .. }) { 8 } else { IN_OUT.bytes };
+    Shape { bytes, ..IN_OUT }
+}
 
 fn simple(defs: &Defs, ty: TypeId) -> Shape {
     match &defs.types[ty] {

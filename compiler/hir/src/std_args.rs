@@ -152,6 +152,10 @@ impl<'a> Checker<'_, 'a> {
             if matches!(expr.kind, ExprKind::Const(_) | ExprKind::String(_) | ExprKind::WString(_)) {
                 continue;
             }
+            // A string of any capacity stays the variable that it is: no temporary has its capacity.
+            if matches!(self.cx.defs.types.get(expr.ty), Ty::AnyString { .. }) {
+                continue;
+            }
             let temp = self.temps.push(expr.ty);
             let read = Expr { kind: ExprKind::Temp(temp), ty: expr.ty, span: *at };
             arguments.push((temp, std::mem::replace(expr, read)));

@@ -40,14 +40,6 @@ impl<'a> Checker<'_, 'a> {
         span: Span,
         want: Option<TypeId>,
     ) -> Operand {
-        if matches!(func.meaning, Meaning::NotYet) {
-            for arg in &call.args {
-                if let ast::ArgKind::Positional(e) | ast::ArgKind::Input(_, Some(e)) = &arg.kind {
-                    self.operand(e, None);
-                }
-            }
-            return self.not_yet(call.callee.span, &format!("the standard function {}", func.name));
-        }
         let Some(placed) = self.place_arguments(func, call) else { return Operand::Error };
         // What the place asks for reaches only arguments of the type variable.
         let var_want = match (func.bound, func.result) {
@@ -117,8 +109,10 @@ impl<'a> Checker<'_, 'a> {
             Meaning::Shift(op) => self.shift(func, op, operands, span, want),
             Meaning::Integral(_) => self.integral(func, operands.remove(0), span, want),
             Meaning::Formula(_) | Meaning::Choose(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
+            Meaning::Text(op) => self.text_call(func, op, operands, span),
+            Meaning::ToText(wide) => self.to_text(func, wide, operands.remove(0), span),
             // A function without result goes another way.
-            Meaning::Outputs | Meaning::NotYet => Operand::Error,
+            Meaning::Outputs => Operand::Error,
         }
     }
 
@@ -145,6 +139,7 @@ impl<'a> Checker<'_, 'a> {
             // `TO_REAL(1)`: an untyped constant has a type of its own here.
             Operand::Int(_) | Operand::Real(_) => self.settle(operand, at),
             Operand::Value { expr, ty } => match self.elem_of(ty) {
+                None if self.is_text(ty) => return self.from_text(to, expr, span),
                 Some(_) => self.settle(Operand::Value { expr, ty }, at),
                 None => return self.no_conversion(func, ty, at),
             },
@@ -163,9 +158,6 @@ impl<'a> Checker<'_, 'a> {
     }
 
     fn no_conversion(&mut self, func: &StdFn, ty: TypeId, at: Span) -> Operand {
-        if matches!(self.cx.defs.types.get(ty), Ty::String { .. } | Ty::AnyString { .. }) {
-            return self.not_yet(at, "converting strings");
-        }
         let name = self.cx.type_name(ty);
         self.report(
             Diagnostic::new(codes::TYPE_MISMATCH, at, format!("{} cannot convert {name}", func.name))
@@ -175,7 +167,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// An integer argument as LINT (`N`, `K`), bit strings by value.
-    fn integer_argument(&mut self, func: &StdFn, operand: Operand, at: Span) -> Option<Expr> {
+    pub fn integer_argument(&mut self, func: &StdFn, operand: Operand, at: Span) -> Option<Expr> {
         let expr = match operand {
             Operand::Int(_) => self.coerce(operand, at, Types::elem(Elem::Lint)),
             operand => self.settle(operand, at),
@@ -336,6 +328,9 @@ impl<'a> Checker<'_, 'a> {
         span: Span,
         want: Option<TypeId>,
     ) -> Operand {
+        if let Some(op) = self.selection_of_texts(func, &operands) {
+            return self.text_call(func, op, operands, span);
+        }
         let is_var = |n: usize| func.param_type(n) == Some(Type::Var);
         let vars: Vec<&(Operand, Span)> =
             operands.iter().enumerate().filter(|(n, _)| is_var(*n)).map(|(_, o)| o).collect();
@@ -546,7 +541,7 @@ impl<'a> Checker<'_, 'a> {
         if self.chooses(func, ty) {
             return Some(ty);
         }
-        if matches!(self.cx.defs.types.get(ty), Ty::String { .. } | Ty::AnyString { .. } | Ty::AnyArray { .. }) {
+        if matches!(self.cx.defs.types.get(ty), Ty::AnyArray { .. }) {
             let what = format!("{} of {}", func.name, self.cx.type_name(ty));
             self.not_yet(span, &what);
             return None;

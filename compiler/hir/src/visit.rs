@@ -81,7 +81,9 @@ pub fn expr(e: &Expr, v: &mut impl Visitor) {
     match &e.kind {
         ExprKind::Read(p) => place(p, Use::Read, v),
         ExprKind::RefOf(p) => place(p, Use::Referenced, v),
-        ExprKind::Op(_, _, args) | ExprKind::Std { args, .. } => args.iter().for_each(|a| expr(a, v)),
+        ExprKind::Op(_, _, args) | ExprKind::Std { args, .. } | ExprKind::Text { args, .. } => {
+            args.iter().for_each(|a| expr(a, v));
+        }
         ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => {
             expr(a, v);
             expr(b, v);
@@ -119,6 +121,7 @@ pub fn place(p: &Place, how: Use, v: &mut impl Visitor) {
                     expr(&index.high, v);
                 }
             }
+            Step::Character { index, .. } => expr(index, v),
             Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => {}
         }
     }

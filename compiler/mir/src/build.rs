@@ -4,7 +4,9 @@
 //! straight (an instruction on operands of the wrong kind is a bug of plcc and stops at once); what a source means is not
 //! its business. Through [`Emit`] the rows of the operator and function tables append to the current block.
 
-use crate::ir::{Args, Base, Block, BlockId, Cond, Func, FuncId, Inst, Place, SourceId, Target, Term, ValueId};
+use crate::ir::{
+    Args, Base, Block, BlockId, Cond, Func, FuncId, Inst, Place, SourceId, Target, Term, TextPlace, ValueId,
+};
 use crate::visit;
 use index_vec::IndexVec;
 use plcc_diag::bug;
@@ -13,6 +15,7 @@ use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::region;
 use plcc_stdlib::rt::RtFn;
+use plcc_stdlib::rt::strings::TextFn;
 
 /// Added to the offset of a place in a callee's frame until the own frame's size is known.
 const CALLEE_FRAME: i64 = 1 << 40;
@@ -302,6 +305,15 @@ impl Builder {
         let source = self.source();
         self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: Some(status), source });
         (dst, status)
+    }
+
+    /// Calls a body that works on strings; gives its result, an I64.
+    pub fn call_text(&mut self, func: &'static TextFn, texts: &[TextPlace], args: &[ValueId]) -> ValueId {
+        texts.iter().for_each(|text| self.expect(text.capacity, Repr::I32));
+        args.iter().for_each(|arg| self.expect(*arg, Repr::I64));
+        let dst = self.values.push(Repr::I64);
+        self.push(Inst::CallText { dst, func, texts: texts.to_vec(), args: args.to_vec() });
+        dst
     }
 
     /// Faults unless a truth value is 1.

@@ -9,6 +9,7 @@ use plcc_diag::Span;
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::rt::RtFn;
+use plcc_stdlib::rt::strings::TextFn;
 
 index_vec::define_index_type! {
     /// A function of the program.
@@ -184,6 +185,18 @@ pub enum Inst {
         /// One per parameter.
         args: Vec<ValueId>,
     },
+    /// Calls a body of the standard library that works on strings in memory. It reads and writes those strings only; one
+    /// that it builds overlaps no other.
+    CallText {
+        /// Result, I64: of a builder the new length.
+        dst: ValueId,
+        /// Which.
+        func: &'static TextFn,
+        /// The strings; a builder writes the first.
+        texts: Vec<TextPlace>,
+        /// The other parameters, I64.
+        args: Vec<ValueId>,
+    },
     /// Leaves the function (and its callers) with a fault unless a condition holds.
     Check {
         /// What must hold.
@@ -311,6 +324,15 @@ pub struct Place {
     pub index: Vec<IndexTerm>,
     /// One bit of the byte that lies here (a packed BOOL); the value is an I8 truth value.
     pub bit: Option<u8>,
+}
+
+/// A string in memory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextPlace {
+    /// Its first character.
+    pub place: Place,
+    /// Characters that it can hold, I32; the closing 0 lies behind them.
+    pub capacity: ValueId,
 }
 
 /// A variable part of a place.

@@ -20,7 +20,8 @@ impl Inst {
             | Inst::Prim { dst, .. }
             | Inst::Load { dst, .. }
             | Inst::AddressOf { dst, .. }
-            | Inst::CallRt { dst, .. } => (Some(*dst), None),
+            | Inst::CallRt { dst, .. }
+            | Inst::CallText { dst, .. } => (Some(*dst), None),
             Inst::Call { dst, status, .. } => (*dst, *status),
             Inst::Store { .. } | Inst::Copy { .. } | Inst::Zero { .. } | Inst::Check { .. } | Inst::Poll { .. } => {
                 (None, None)
@@ -51,6 +52,13 @@ impl Inst {
                 args.iter().for_each(|v| visit(*v));
             }
             Inst::CallRt { args, .. } => args.iter().for_each(|v| visit(*v)),
+            Inst::CallText { texts, args, .. } => {
+                for text in texts {
+                    text.place.for_each_use(&mut visit);
+                    visit(text.capacity);
+                }
+                args.iter().for_each(|v| visit(*v));
+            }
             Inst::Check { cond, operands, .. } => {
                 match cond {
                     Cond::True(value) | Cond::Within { value, .. } => visit(*value),

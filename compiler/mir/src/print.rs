@@ -143,6 +143,12 @@ impl Printer<'_> {
                 text
             }
             Inst::CallRt { dst, func, args } => format!("{} = call {}({})", value(*dst), func.symbol, values(args)),
+            Inst::CallText { dst, func, texts, args } => {
+                let mut list: Vec<String> =
+                    texts.iter().map(|t| format!("{}[{}]", self.place(&t.place), value(t.capacity))).collect();
+                list.extend(args.iter().map(|v| value(*v)));
+                format!("{} = call {}({})", value(*dst), func.symbol, list.join(", "))
+            }
             Inst::Check { cond, fault, operands, source } => {
                 let cond = match cond {
                     Cond::True(v) => value(*v),

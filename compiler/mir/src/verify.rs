@@ -220,6 +220,19 @@ impl Checker<'_> {
                 }
                 self.is(*dst, func.result, func.symbol);
             }
+            Inst::CallText { dst, func, texts, args } => {
+                self.demand(texts.len() == func.texts && args.len() == func.params, || {
+                    format!("`{}` with {} strings and {} arguments", func.symbol, texts.len(), args.len())
+                });
+                for text in texts {
+                    self.whole(&text.place, 0);
+                    self.is(text.capacity, Repr::I32, "capacity");
+                }
+                for arg in args {
+                    self.is(*arg, Repr::I64, func.symbol);
+                }
+                self.is(*dst, Repr::I64, func.symbol);
+            }
             Inst::Check { cond, operands, source, .. } => {
                 self.source(*source);
                 let own = match cond {

@@ -22,6 +22,7 @@ pub fn places(inst: &mut Inst, f: &mut impl FnMut(&mut Place)) {
         }
         Inst::Zero { dst, .. } => f(dst),
         Inst::Call { instance, .. } => instance.iter_mut().for_each(f),
+        Inst::CallText { texts, .. } => texts.iter_mut().for_each(|text| f(&mut text.place)),
         Inst::Const { .. } | Inst::Prim { .. } | Inst::CallRt { .. } | Inst::Check { .. } | Inst::Poll { .. } => {}
     }
 }
@@ -33,6 +34,10 @@ pub fn uses(inst: &mut Inst, f: &mut impl FnMut(&mut ValueId)) {
         Inst::Prim { args, .. } => args.iter_mut().for_each(f),
         Inst::Store { value, .. } => f(value),
         Inst::Call { args, .. } | Inst::CallRt { args, .. } => args.iter_mut().for_each(f),
+        Inst::CallText { texts, args, .. } => {
+            texts.iter_mut().for_each(|text| f(&mut text.capacity));
+            args.iter_mut().for_each(f);
+        }
         Inst::Check { cond, operands, .. } => {
             match cond {
                 Cond::True(v) | Cond::Within { value: v, .. } => f(v),
@@ -55,7 +60,8 @@ pub fn defs(inst: &mut Inst, f: &mut impl FnMut(&mut ValueId)) {
         | Inst::Prim { dst, .. }
         | Inst::Load { dst, .. }
         | Inst::AddressOf { dst, .. }
-        | Inst::CallRt { dst, .. } => f(dst),
+        | Inst::CallRt { dst, .. }
+        | Inst::CallText { dst, .. } => f(dst),
         Inst::Call { dst, status, .. } => {
             dst.iter_mut().for_each(&mut *f);
             status.iter_mut().for_each(f);

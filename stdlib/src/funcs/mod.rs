@@ -8,8 +8,8 @@ mod bits;
 mod calendar;
 mod convert;
 mod numeric;
-mod pending;
 mod select;
+mod strings;
 mod time;
 
 use crate::elem::{Elem, Generic};
@@ -17,6 +17,8 @@ use crate::emit::{Emit, Val};
 use crate::prim::PrimOp;
 use std::collections::HashMap;
 use std::sync::OnceLock;
+
+pub use strings::TextOp;
 
 /// A standard function.
 #[derive(Debug, Clone)]
@@ -86,6 +88,8 @@ pub enum Type {
     IntegerOfPlace,
     /// No result: everything is in the outputs.
     Nothing,
+    /// A string of any capacity: a WSTRING if TRUE.
+    Text(bool),
 }
 
 /// What a function means.
@@ -111,10 +115,12 @@ pub enum Meaning {
     Choose(Formula),
     /// Nothing but outputs.
     Outputs,
+    /// An operation on strings.
+    Text(TextOp),
+    /// Any elementary value or string to a string: a WSTRING if TRUE.
+    ToText(bool),
     /// A formula over the values of all arguments; the element is what the type variable stands for.
     Formula(Formula),
-    /// The place is laid, the body is not built.
-    NotYet,
 }
 
 /// A function body over [`Emit`]. `None`: it has no value where there is no clock (constants).
@@ -202,6 +208,7 @@ impl StdFn {
             (Type::Integer, _) => "ANY_INT".into(),
             (Type::IntegerOfPlace, _) => "ANY_INT".into(),
             (Type::Nothing, _) => String::new(),
+            (Type::Text(wide), _) => if wide { "WSTRING" } else { "STRING" }.into(),
         };
         let mut params: Vec<String> = self.params.iter().map(|p| format!("{} : {}", p.name, text(p.ty))).collect();
         if let Some(v) = self.variadic {
@@ -271,8 +278,13 @@ fn table() -> &'static HashMap<String, StdFn> {
             }
             table.insert(row.name.clone(), row);
         }
-        let fixed = time::rows().into_iter().chain(calendar::rows()).chain(bits::rows()).chain(convert::rows());
-        for row in fixed.chain(select::typed_mux()).chain(time::typed_scaling()).chain(pending::rows()) {
+        let fixed = time::rows()
+            .into_iter()
+            .chain(calendar::rows())
+            .chain(bits::rows())
+            .chain(convert::rows())
+            .chain(strings::rows());
+        for row in fixed.chain(select::typed_mux()).chain(time::typed_scaling()) {
             for output in &row.outputs {
                 let name = format!("${}.{}", row.name, output.name);
                 let meaning = Meaning::Formula(output.formula);

@@ -4,6 +4,7 @@
 use crate::prim::Repr;
 
 pub mod math;
+pub mod strings;
 pub mod time;
 
 /// A pure function on scalars with a native symbol.

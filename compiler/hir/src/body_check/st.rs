@@ -195,10 +195,6 @@ impl<'a> St<'_, 'a> {
                 );
                 false
             }
-            Type::String { .. } | Type::AnyString { .. } => {
-                self.c.not_yet(place.span, "assigning strings");
-                false
-            }
             _ => true,
         }
     }

@@ -5,7 +5,7 @@
 
 use super::op::{
     BlockSite, CallSite, CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, Op, PrimSite, REGION, Reg, RtSite,
-    SCRATCH, SwitchSite,
+    SCRATCH, SwitchSite, TextSite,
 };
 use crate::ir::{Base, BlockId, Cond, Func, FuncId, Inst, Place, Program, Target, Term, ValueId};
 use crate::verify::bottom_up;
@@ -276,6 +276,16 @@ impl<'a> Decoder<'a> {
                 let site = RtSite { func, dst: self.reg(*dst), args: self.regs(args) };
                 self.out.rt_calls.push(site);
                 self.push(Op::CallRt(self.out.rt_calls.len() as u32 - 1));
+            }
+            Inst::CallText { dst, func, texts, args } => {
+                let mut places = Vec::with_capacity(texts.len());
+                for (text, scratch) in texts.iter().zip(SCRATCH) {
+                    let (base, offset) = self.place(&text.place, scratch);
+                    places.push((base, offset, self.reg(text.capacity)));
+                }
+                let site = TextSite { func, dst: self.reg(*dst), texts: places, args: self.regs(args) };
+                self.out.text_calls.push(site);
+                self.push(Op::CallText(self.out.text_calls.len() as u32 - 1));
             }
             Inst::Check { cond, fault, operands, source } => {
                 let (low, high) = match cond {

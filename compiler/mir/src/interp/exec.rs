@@ -1,10 +1,11 @@
 //! Runs decoded functions.
 
-use super::op::{CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, Op, REGION, Reg, specialised};
+use super::op::{CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, MAX_TEXTS, Op, REGION, Reg, specialised};
 use crate::ir::FuncId;
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr, eval};
 use plcc_stdlib::region::{DEADLINE_FLAG, FAULT_CODE, FAULT_INSTANCE, FAULT_OPERANDS, FAULT_SOURCE};
+use plcc_stdlib::rt::strings::Text;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A caller that waits for its callee.
@@ -178,6 +179,20 @@ pub fn run(
                         *to = get!(*from);
                     }
                     get!(call.dst) = (call.func.eval)(&args[..call.args.len()]);
+                }
+                Op::CallText(site) => {
+                    let call = &func.text_calls[site as usize];
+                    let mut texts = [Text { at: 0, capacity: 0 }; MAX_TEXTS];
+                    for (to, (base, offset, capacity)) in texts.iter_mut().zip(&call.texts) {
+                        let at = address(get!(*base), *offset);
+                        *to = Text { at: at as u32, capacity: get!(*capacity) as u32 };
+                    }
+                    let mut args = [0u64; MAX_RT_ARGS];
+                    for (to, from) in args.iter_mut().zip(&call.args) {
+                        *to = get!(*from);
+                    }
+                    let (texts, args) = (&texts[..call.texts.len()], &args[..call.args.len()]);
+                    get!(call.dst) = (call.func.eval)(mem, texts, args);
                 }
                 Op::CheckTrue(value, site) => {
                     if get!(value) == 0 {

@@ -5,6 +5,7 @@ use index_vec::IndexVec;
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::rt::RtFn;
+use plcc_stdlib::rt::strings::TextFn;
 
 /// Number of a register, counted from the first of the running function.
 pub type Reg = u32;
@@ -15,10 +16,12 @@ pub const REGION: Reg = 0;
 pub const INSTANCE: Reg = 1;
 /// Region offset of the frame.
 pub const FRAME: Reg = 2;
-/// Two scratch registers for addresses; the first also breaks cycles of parallel moves.
-pub const SCRATCH: [Reg; 2] = [3, 4];
+/// Scratch registers for addresses, as many as an operation may need; the first also breaks cycles of parallel moves.
+pub const SCRATCH: [Reg; MAX_TEXTS] = [3, 4, 5];
 /// Constants start here, values follow.
-pub const FIRST_FREE: Reg = 5;
+pub const FIRST_FREE: Reg = 6;
+/// So many strings a body of the standard library takes at most.
+pub const MAX_TEXTS: usize = 3;
 
 /// Lists the machine operations that have an operation of their own, so that [`eval`](plcc_stdlib::prim::eval) is compiled
 /// for constant `op` and `repr`. Their meaning stays there. Calls `$use!` with the list.
@@ -108,6 +111,8 @@ macro_rules! define_op {
             Call(u32),
             /// By number of the [`RtSite`].
             CallRt(u32),
+            /// By number of the [`TextSite`].
+            CallText(u32),
             /// `value, CheckSite`.
             CheckTrue(Reg, u32),
             CheckWithin(Reg, u32),
@@ -194,6 +199,16 @@ pub struct RtSite {
     pub args: Vec<Reg>,
 }
 
+/// A call of the standard library on strings.
+#[derive(Debug, Clone)]
+pub struct TextSite {
+    pub func: &'static TextFn,
+    pub dst: Reg,
+    /// Base, offset, capacity.
+    pub texts: Vec<(Reg, i32, Reg)>,
+    pub args: Vec<Reg>,
+}
+
 /// A check, or a poll.
 #[derive(Debug, Clone)]
 pub struct CheckSite {
@@ -228,6 +243,7 @@ pub struct FuncCode {
     pub blocks: Vec<BlockSite>,
     pub calls: Vec<CallSite>,
     pub rt_calls: Vec<RtSite>,
+    pub text_calls: Vec<TextSite>,
     pub checks: Vec<CheckSite>,
     pub switches: Vec<SwitchSite>,
 }

@@ -4,13 +4,14 @@
 
 use super::func::{FuncLower, parameters};
 use super::place::{Access, Purpose};
+use super::text::Text;
 use crate::build::Builder;
 use crate::ir::{Base, BlockId, Place, ValueId};
 use crate::layout::Slot;
 use plcc_diag::bug;
 use plcc_hir::body::{self, Call, Callee, Expr};
 use plcc_hir::shape::repr;
-use plcc_hir::{Init, PouId, PouKind, Section, TypeId, VarId};
+use plcc_hir::{Init, PouId, PouKind, Section, Type, TypeId, VarId};
 use plcc_stdlib::prim::{PrimOp, Repr};
 use rustc_hash::FxHashMap;
 
@@ -41,6 +42,7 @@ impl Written<'_> {
 enum Argument {
     Scalar(VarId, ValueId),
     Aggregate(VarId, Place, TypeId),
+    Text(VarId, Text),
 }
 
 /// What is called.
@@ -162,15 +164,21 @@ impl FuncLower<'_, '_> {
         let mut arguments = Vec::with_capacity(written.len());
         for (n, argument) in written.iter().enumerate() {
             arguments.push(match argument {
-                Written::InOut(var, place) => Argument::Scalar(*var, self.address(place, Purpose::Access)),
+                Written::InOut(var, place) => Argument::Scalar(*var, self.reference(*var, place)),
                 Written::Input(var, e) if repr(self.defs, e.ty).is_some() => Argument::Scalar(*var, self.value(e)),
                 Written::Input(var, e) => {
-                    let mut place = self.aggregate(e);
                     // What is evaluated later may change it, and so may the store of another argument in the instance.
                     let stored_with_others = target.instance.is_some() && written.len() > 1;
-                    if stored_with_others || written[n + 1..].iter().any(Written::calls) {
+                    let keep = stored_with_others || written[n + 1..].iter().any(Written::calls);
+                    if self.is_text(e.ty) {
+                        let text = if keep { self.lasting_text(e) } else { self.text(e) };
+                        arguments.push(Argument::Text(*var, text));
+                        continue;
+                    }
+                    let mut place = self.aggregate(e);
+                    if keep {
                         let temp = self.new_temp(e.ty);
-                        self.copy_value(temp.clone(), e.ty, place, e.ty);
+                        self.copy_bytes(temp.clone(), place, e.ty);
                         place = temp;
                     }
                     Argument::Aggregate(*var, place, e.ty)
@@ -178,6 +186,18 @@ impl FuncLower<'_, '_> {
             });
         }
         arguments
+    }
+
+    /// What a VAR_IN_OUT holds: the reference, with the capacity above it if the parameter is a string of any.
+    fn reference(&mut self, var: VarId, place: &body::Place) -> ValueId {
+        if !matches!(self.defs.types[self.defs.vars[var].ty], Type::AnyString { .. }) {
+            return self.address(place, Purpose::Access);
+        }
+        let access = self.place(place);
+        match self.text_at(&access) {
+            Some(text) => self.packed(&text),
+            None => bug!("{:?} for a VAR_IN_OUT STRING", self.defs.types[access.ty]),
+        }
     }
 
     /// Stores arguments where the callee looks for them; gives the values of a function's parameters.
@@ -196,7 +216,14 @@ impl FuncLower<'_, '_> {
                 }
                 Argument::Aggregate(var, from, ty) => {
                     let to = self.parameter(target, var);
-                    self.copy_value(to.place, to.ty, from, ty);
+                    self.copy_bytes(to.place, from, ty);
+                    stored.push(var);
+                }
+                Argument::Text(var, from) => {
+                    let to = self.parameter(target, var);
+                    if let Some(to) = self.text_at(&to) {
+                        self.copy_text(&to, &from);
+                    }
                     stored.push(var);
                 }
             }
@@ -248,7 +275,7 @@ impl FuncLower<'_, '_> {
         if let (Callee::Function(pou), Some(to)) = (&call.callee, into) {
             let Some(result) = self.defs.pous[*pou].result else { bug!("the result of a function without one") };
             let from = self.parameter(target, result);
-            self.copy_value(to.clone(), from.ty, from.place, from.ty);
+            self.copy_bytes(to.clone(), from.place, from.ty);
         }
         let keep = call.outputs.iter().any(|o| o.target.calls());
         let mut fetched = Vec::with_capacity(call.outputs.len());
@@ -272,7 +299,7 @@ impl FuncLower<'_, '_> {
             let mut place = from.place;
             if keep {
                 let temp = self.new_temp(from.ty);
-                self.copy_value(temp.clone(), from.ty, place, from.ty);
+                self.copy_bytes(temp.clone(), place, from.ty);
                 place = temp;
             }
             fetched.push(Argument::Aggregate(output.output, place, from.ty));
@@ -281,9 +308,8 @@ impl FuncLower<'_, '_> {
             let to = self.place(&output.target);
             match value {
                 Argument::Scalar(_, value) => self.store(&to, value),
-                Argument::Aggregate(_, from, ty) => {
-                    self.copy_value(to.place, to.ty, from, ty);
-                }
+                Argument::Aggregate(_, from, ty) => self.copy_aggregate(&to, &Self::plain(from, ty)),
+                Argument::Text(..) => bug!("an output is fetched as a place"),
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Expressions: scalars become values, aggregates are places to copy from or are made in place.
 
 use super::func::FuncLower;
-use super::place::Purpose;
+use super::place::{Access, Purpose};
 use crate::ir::{Place, ValueId};
 use plcc_diag::bug;
 use plcc_hir::TypeId;
@@ -65,6 +65,7 @@ impl FuncLower<'_, '_> {
                 None => bug!("the scalar result of a standard function without one"),
             },
             ExprKind::Choose { selector, choices } => self.choose_value(selector, choices, expr.ty),
+            ExprKind::Text { op, wide, args } => self.text_value(*op, *wide, args, expr),
             ExprKind::RefOf(place) => self.address(place, Purpose::Address),
             ExprKind::Temp(temp) => {
                 let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
@@ -121,25 +122,21 @@ impl FuncLower<'_, '_> {
         }
     }
 
-    /// Where an aggregate lies that an expression gives. It is to be copied before anything else is evaluated.
+    /// Where an aggregate lies that an expression gives, no string. It is to be copied before anything else is evaluated.
     pub fn aggregate(&mut self, expr: &Expr) -> Place {
         match &expr.kind {
             ExprKind::Read(place) => self.place(place).place,
             ExprKind::Temp(temp) => self.temp_place(*temp),
             ExprKind::Retype(inner) => self.aggregate(inner),
-            ExprKind::String(text) => self.string_constant(text.clone(), 1),
-            ExprKind::WString(text) => {
-                self.string_constant(text.iter().flat_map(|unit| unit.to_le_bytes()).collect(), 2)
-            }
             ExprKind::Call(call) => {
                 let temp = self.new_temp(expr.ty);
                 self.call(call, Some(temp.clone()));
                 temp
             }
             ExprKind::StdCall(call) => {
-                let temp = self.new_temp(expr.ty);
-                self.std_call(call, expr.ty, Some(temp.clone()));
-                temp
+                let temp = Self::plain(self.new_temp(expr.ty), expr.ty);
+                self.std_call(call, expr.ty, Some(&temp));
+                temp.place
             }
             ExprKind::Choose { selector, choices } => {
                 let temp = self.new_temp(expr.ty);
@@ -150,16 +147,17 @@ impl FuncLower<'_, '_> {
         }
     }
 
-    /// Stores the aggregate that an expression gives.
-    pub fn aggregate_into(&mut self, expr: &Expr, to: Place, to_type: TypeId) {
-        match &expr.kind {
+    /// Stores the aggregate or string that an expression gives.
+    pub fn store_aggregate(&mut self, expr: &Expr, to: &Access) {
+        match (&expr.kind, self.text_at(to)) {
             // The copy of the result is the last thing that such a call does.
-            ExprKind::Call(call) if expr.ty == to_type && call.outputs.is_empty() && call.eno.is_none() => {
-                self.call(call, Some(to));
+            (ExprKind::Call(call), _) if expr.ty == to.ty && call.outputs.is_empty() && call.eno.is_none() => {
+                self.call(call, Some(to.place.clone()));
             }
-            _ => {
+            (_, Some(to)) => self.text_into(expr, &to),
+            (_, None) => {
                 let from = self.aggregate(expr);
-                self.copy_value(to, to_type, from, expr.ty);
+                self.copy_bytes(to.place.clone(), from, to.ty);
             }
         }
     }
@@ -175,6 +173,9 @@ impl FuncLower<'_, '_> {
             }
             ExprKind::StdCall(call) if expr.ty == plcc_hir::Types::VOID => {
                 self.std_call(call, expr.ty, None);
+            }
+            _ if self.is_text(expr.ty) => {
+                self.text(expr);
             }
             _ => {
                 self.aggregate(expr);

@@ -12,7 +12,7 @@ use index_vec::IndexVec;
 use plcc_diag::{Span, bug};
 use plcc_hir::body::TempId;
 use plcc_hir::shape::repr;
-use plcc_hir::{Body, Defs, Init, PouId, PouKind, Section, TypeId, VarId};
+use plcc_hir::{Body, Defs, Init, PouId, PouKind, Section, Type, TypeId, VarId};
 use plcc_stdlib::prim::Repr;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -69,6 +69,8 @@ pub(super) fn parameters(defs: &Defs, function: PouId) -> Vec<(VarId, Repr)> {
         let var = &defs.vars[*id];
         match var.section {
             Section::Input => repr(defs, var.ty).map(|r| (*id, r)),
+            // A string without length brings its capacity along.
+            Section::InOut if matches!(defs.types[var.ty], Type::AnyString { .. }) => Some((*id, Repr::I64)),
             Section::InOut => Some((*id, Repr::I32)),
             _ => None,
         }
@@ -108,6 +110,8 @@ pub(super) struct FuncLower<'c, 'a> {
     /// Size of the frame so far.
     frame_bytes: u64,
     temps: IndexVec<TempId, Option<u32>>,
+    /// Memory for strings that an expression makes.
+    pub text_temps: super::text::Temps,
     /// Variables in the frame (or in the static place of one whose address is taken) that the body uses.
     used: FxHashSet<VarId>,
     names: FxHashMap<(Base, u32), String>,
@@ -136,6 +140,7 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             body,
             frame_bytes: u64::from(frame_bytes),
             temps: body.map(|b| b.temps.iter().map(|_| None).collect()).unwrap_or_default(),
+            text_temps: super::text::Temps::default(),
             used: FxHashSet::default(),
             names: FxHashMap::default(),
             has_source: false,
@@ -217,8 +222,13 @@ impl<'c, 'a> FuncLower<'c, 'a> {
     /// A new temporary in the frame.
     pub fn new_temp(&mut self, ty: TypeId) -> Place {
         let shape = self.cx.layout.shapes.of(self.defs, ty);
-        let offset = self.frame_bytes.next_multiple_of(shape.align);
-        self.frame_bytes = offset.saturating_add(shape.bytes).min(1 << 62);
+        self.frame_room(shape.bytes, shape.align)
+    }
+
+    /// More room in the frame.
+    pub fn frame_room(&mut self, bytes: u64, align: u64) -> Place {
+        let offset = self.frame_bytes.next_multiple_of(align);
+        self.frame_bytes = offset.saturating_add(bytes).min(1 << 62);
         let offset = offset.min(MAX_REGION_BYTES) as u32;
         let place = Place::new(Base::Frame, offset);
         self.name_place(&place, || format!("${offset}"));

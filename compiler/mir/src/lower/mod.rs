@@ -21,6 +21,7 @@ mod std_call;
 mod stmt;
 mod string;
 mod task;
+mod text;
 
 use crate::ir::{FuncId, Program, Source, SourceId};
 use crate::layout::{Layout, TooLarge};
@@ -80,6 +81,7 @@ pub fn lower(
         funcs,
         sources: IndexVec::new(),
         constants: Constants::default(),
+        longest: text::longest(defs),
         too_large: None,
     };
     for &pou in &reach.pous {
@@ -121,6 +123,8 @@ struct Context<'a> {
     funcs: FxHashMap<PouId, FuncId>,
     sources: IndexVec<SourceId, Source>,
     constants: Constants,
+    /// Capacity of the longest STRING and WSTRING that a variable can have.
+    longest: [u32; 2],
     /// The first function whose frame is too large.
     too_large: Option<TooLarge>,
 }

@@ -65,6 +65,12 @@ fn append(defs: &Defs, text: &mut String, ty: Option<TypeId>, step: &Step) -> Op
                 _ => None,
             }
         }
+        Step::Character { index, .. } => {
+            let number = constant(index).map_or("..".to_string(), |raw| (raw as i64).to_string());
+            // As above.
+            let _ = write!(text, "[{number}]");
+            None
+        }
         Step::Deref => {
             text.push('^');
             target(defs, ty)

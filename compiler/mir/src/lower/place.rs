@@ -41,6 +41,8 @@ pub(super) struct Access {
     normalise: bool,
     /// Names the reference that was followed last, and was not checked yet for the size of the access.
     unchecked: Option<String>,
+    /// Of a string without fixed capacity: the capacity (I32) that came with its reference.
+    pub capacity: Option<ValueId>,
 }
 
 /// A bit or part of a word.
@@ -88,7 +90,7 @@ impl FuncLower<'_, '_> {
         let normalise = self.cx.layout.is_addressable(self.defs, id)
             || var.address.is_some_and(|a| a.bit.is_none())
             || (place.base == Base::Instance && of_exposed_block);
-        self.follow_in_out(Access { place, ty: var.ty, part: None, normalise, unchecked: None }, id)
+        self.follow_in_out(Access { place, ty: var.ty, part: None, normalise, unchecked: None, capacity: None }, id)
     }
 
     /// The access to a variable of the instance at a place.
@@ -118,7 +120,10 @@ impl FuncLower<'_, '_> {
     /// A VAR_IN_OUT stands for the variable whose reference it holds; the caller checked that.
     fn follow_in_out(&mut self, mut access: Access, id: VarId) -> Access {
         if self.defs.vars[id].section == plcc_hir::Section::InOut {
-            let reference = self.b.load(Repr::I32, access.place, false);
+            let reference = self.b.load(Repr::I32, access.place.clone(), false);
+            if let Type::AnyString { .. } = self.defs.types[access.ty] {
+                access.capacity = Some(self.b.load(Repr::I32, access.place.plus(Repr::I32.bytes()), false));
+            }
             access.place = Place::new(Base::Reference(reference), 0);
             access.normalise = true;
             access.unchecked = None;
@@ -135,6 +140,7 @@ impl FuncLower<'_, '_> {
                 part: None,
                 normalise: false,
                 unchecked: None,
+                capacity: None,
             },
             Root::Deref(reference) => {
                 let value = self.value(reference);
@@ -148,7 +154,14 @@ impl FuncLower<'_, '_> {
                 let start = self.cx.layout.area(address.area).start;
                 let place_in_region = Place { bit: address.bit, ..Place::new(Base::Region, start + address.byte) };
                 // With steps behind it its own type does not matter: see `step`.
-                Access { place: place_in_region, ty: place.ty, part: None, normalise: true, unchecked: None }
+                Access {
+                    place: place_in_region,
+                    ty: place.ty,
+                    part: None,
+                    normalise: true,
+                    unchecked: None,
+                    capacity: None,
+                }
             }
         }
     }
@@ -162,7 +175,7 @@ impl FuncLower<'_, '_> {
             self.b.check_true(ok, Fault::NullReference, &[]);
         }
         let place = Place::new(Base::Reference(reference), 0);
-        Access { place, ty: target, part: None, normalise: true, unchecked: Some(name) }
+        Access { place, ty: target, part: None, normalise: true, unchecked: Some(name), capacity: None }
     }
 
     fn step(&mut self, access: &mut Access, place: &body::Place, n: usize, step: &Step) {
@@ -188,6 +201,7 @@ impl FuncLower<'_, '_> {
             }
             Step::Index(indices, name) => self.index(access, indices, name),
             Step::OpenIndex(indices, name) => self.open_index(access, indices, name),
+            Step::Character { index, first, name } => self.character(access, index, *first, name),
             Step::Deref => {
                 let Type::Ref { target, .. } = self.defs.types[access.ty] else {
                     bug!("a dereference of {:?}", access.ty)
@@ -302,6 +316,50 @@ impl FuncLower<'_, '_> {
         access.normalise |= self.cx.layout.aliasing;
     }
 
+    /// One character: a unit of a string, up to the last that its capacity has, counted from `first`.
+    fn character(&mut self, access: &mut Access, index: &Expr, first: u8, name: &str) {
+        let Some(text) = self.text_at(access) else { bug!("a character of {:?}", self.defs.types[access.ty]) };
+        let stride = text.unit_bytes();
+        let low = i64::from(first);
+        let fixed = text.known().map(i64::from);
+        access.ty = Types::elem(match (first, stride) {
+            (0, 1) => Elem::Byte,
+            (0, _) => Elem::Word,
+            (_, 1) => Elem::Char,
+            _ => Elem::Wchar,
+        });
+        access.capacity = None;
+        if let (Some(raw), Some(last)) = (constant(index), fixed)
+            && (low..=last).contains(&(raw as i64))
+        {
+            access.place.offset += (raw as i64 - low) * i64::from(stride);
+            return;
+        }
+        let mut value = self.value(index);
+        let capacity = self.capacity(&text);
+        let last = self.b.resize(capacity, false, Repr::I64);
+        if self.cx.checks.index {
+            self.at(index.span, name);
+            match fixed {
+                Some(high) => self.b.check_within(value, low, high, Fault::IndexOutOfBounds),
+                None => {
+                    let start = self.b.number(Repr::I64, low as u64);
+                    let from = self.b.op(PrimOp::LeS, Repr::I64, &[start, value]);
+                    let to = self.b.op(PrimOp::LeS, Repr::I64, &[value, last]);
+                    let ok = self.b.op(PrimOp::And, Repr::I8, &[from, to]);
+                    self.b.check_true(ok, Fault::IndexOutOfBounds, &[value, start, last]);
+                }
+            }
+        } else {
+            let start = self.b.number(Repr::I64, low as u64);
+            value = self.b.op(PrimOp::MinS, Repr::I64, &[value, last]);
+            value = self.b.op(PrimOp::MaxS, Repr::I64, &[value, start]);
+        }
+        let high = fixed.unwrap_or(i64::from(self.cx.longest[usize::from(text.wide)]));
+        access.place.offset -= low * i64::from(stride);
+        access.place.index.push(IndexTerm { value, stride, low, high });
+    }
+
     /// Checks that a reference that was followed reaches an access of this size: all of it lies in the addressable part.
     fn check_reference(&mut self, access: &mut Access, place: &body::Place, bytes: u32) {
         let (Some(name), Base::Reference(reference)) = (access.unchecked.take(), access.place.base) else { return };
@@ -404,7 +462,7 @@ impl FuncLower<'_, '_> {
 
     /// An access to a scalar or aggregate of the function's own making.
     pub fn plain(place: Place, ty: TypeId) -> Access {
-        Access { place, ty, part: None, normalise: false, unchecked: None }
+        Access { place, ty, part: None, normalise: false, unchecked: None, capacity: None }
     }
 }
 

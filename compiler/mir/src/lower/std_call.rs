@@ -4,6 +4,7 @@
 //! without a result; faults of the arguments stay faults.
 
 use super::func::FuncLower;
+use super::place::Access;
 use crate::ir::{Place, ValueId};
 use plcc_hir::body::{Expr, StdCall};
 use plcc_hir::shape::repr;
@@ -12,7 +13,7 @@ use plcc_stdlib::prim::Repr;
 
 impl FuncLower<'_, '_> {
     /// A call. Its scalar result is given back; an aggregate one is written to `into`.
-    pub fn std_call(&mut self, call: &StdCall, ty: TypeId, into: Option<Place>) -> Option<ValueId> {
+    pub fn std_call(&mut self, call: &StdCall, ty: TypeId, into: Option<&Access>) -> Option<ValueId> {
         let scalar = repr(self.defs, ty);
         let (join, without) = (self.b.block(), self.b.block());
         let eno = self.b.block_param(join, Repr::I8);
@@ -30,13 +31,13 @@ impl FuncLower<'_, '_> {
                     let value = self.value(argument);
                     self.b.store(place, value);
                 }
-                None => self.aggregate_into(argument, place, argument.ty),
+                None => self.store_aggregate(argument, &Self::plain(place, argument.ty)),
             }
         }
         let outer = if call.eno.is_some() { Some(self.b.set_catch(Some(without))) } else { None };
-        let value = match (&call.value, &into) {
-            (Some(value), Some(place)) => {
-                self.aggregate_into(value, place.clone(), ty);
+        let value = match (&call.value, into) {
+            (Some(value), Some(to)) => {
+                self.store_aggregate(value, to);
                 None
             }
             (Some(value), None) if scalar.is_some() => Some(self.value(value)),
@@ -62,7 +63,7 @@ impl FuncLower<'_, '_> {
         let mut args = vec![self.b.number(Repr::I8, 0)];
         match (scalar, into) {
             (Some(repr), _) => args.push(self.init_value(repr, ty, &Init::Default)),
-            (None, Some(place)) => self.store_init(place, ty, &Init::Default),
+            (None, Some(to)) => self.store_nothing(to),
             (None, None) => {}
         }
         self.b.jump(join, &args);
@@ -73,6 +74,14 @@ impl FuncLower<'_, '_> {
             self.store(&access, eno);
         }
         joined
+    }
+
+    /// The default of an aggregate or string.
+    fn store_nothing(&mut self, to: &Access) {
+        match self.text_at(to) {
+            Some(text) => self.clear_text(&text),
+            None => self.store_init(to.place.clone(), to.ty, &Init::Default),
+        }
     }
 
     /// The chosen one of scalars.
@@ -87,7 +96,7 @@ impl FuncLower<'_, '_> {
         chosen
     }
 
-    /// Writes the chosen one of aggregates, which may be of another capacity each.
+    /// Writes the chosen one of aggregates of one type.
     pub fn choose_into(&mut self, selector: &Expr, choices: &[Expr], to: Place, ty: TypeId) {
         let selector = self.value(selector);
         let mut places = Vec::with_capacity(choices.len());
@@ -96,14 +105,14 @@ impl FuncLower<'_, '_> {
             // What is evaluated later may change it.
             if choices[n + 1..].iter().any(Expr::calls) {
                 let temp = self.new_temp(choice.ty);
-                self.copy_value(temp.clone(), choice.ty, place, choice.ty);
+                self.copy_bytes(temp.clone(), place, choice.ty);
                 place = temp;
             }
             places.push(place);
         }
         let join = self.b.block();
         self.each_choice(selector, choices.len(), |f, n| {
-            f.copy_value(to.clone(), ty, places[n].clone(), choices[n].ty);
+            f.copy_bytes(to.clone(), places[n].clone(), ty);
             f.b.jump(join, &[]);
         });
         self.b.switch_to(join);

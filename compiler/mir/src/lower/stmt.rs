@@ -21,6 +21,8 @@ impl FuncLower<'_, '_> {
     }
 
     fn stmt(&mut self, stmt: &Stmt) {
+        // No string of the statement around is needed any more: conditions and bounds are values.
+        self.text_temps.release();
         match &stmt.kind {
             StmtKind::Assign { target, value } => self.assign(target, value),
             StmtKind::Call(call) => {
@@ -68,7 +70,7 @@ impl FuncLower<'_, '_> {
             let value = self.value(value);
             self.store(&to, value);
         } else {
-            self.aggregate_into(value, to.place, target.ty);
+            self.store_aggregate(value, &to);
         }
     }
 

@@ -1,29 +1,22 @@
-//! Copies of aggregates, and of strings, which may differ in capacity (semantics.md \[T8\]).
-//!
-//! A string ends at its first 0, so copying as many characters as both can hold and writing a 0 behind them cuts at the
-//! capacity, whatever the lengths are; no loop looks for the end.
+//! Copies of aggregates, and constants in memory.
 
 use super::func::FuncLower;
+use super::place::Access;
 use crate::ir::{Base, Place};
-use plcc_hir::{Type, TypeId};
-use plcc_stdlib::prim::Repr;
+use plcc_hir::TypeId;
 
 impl FuncLower<'_, '_> {
-    /// Copies a value that is no scalar.
-    pub fn copy_value(&mut self, to: Place, to_type: TypeId, from: Place, from_type: TypeId) {
-        let types = &self.defs.types;
-        if let (Type::String { wide, capacity: room }, Type::String { capacity, .. }) =
-            (&types[to_type], &types[from_type])
-        {
-            let (repr, size) = if *wide { (Repr::I16, 2) } else { (Repr::I8, 1) };
-            // A capacity whose bytes do not fit was refused with its variable.
-            let bytes = (*room.min(capacity)).saturating_mul(size);
-            self.b.copy(to.clone(), from, bytes);
-            let end = self.b.number(repr, 0);
-            self.b.store(to.plus(bytes), end);
-            return;
+    /// Copies a value that is no scalar to one of the same type, or a string to one of any capacity.
+    pub fn copy_aggregate(&mut self, to: &Access, from: &Access) {
+        match (self.text_at(to), self.text_at(from)) {
+            (Some(to), Some(from)) => self.copy_text(&to, &from),
+            _ => self.copy_bytes(to.place.clone(), from.place.clone(), to.ty),
         }
-        let bytes = self.cx.layout.size(self.defs, to_type);
+    }
+
+    /// Copies a value of a type whole.
+    pub fn copy_bytes(&mut self, to: Place, from: Place, ty: TypeId) {
+        let bytes = self.cx.layout.size(self.defs, ty);
         self.b.copy(to, from, bytes);
     }
 

@@ -37,7 +37,7 @@ impl FuncLower<'_, '_> {
                 self.store(&to, value);
             } else {
                 let to = self.program_variable(&instance, *var);
-                self.aggregate_into(value, to.place, to.ty);
+                self.store_aggregate(value, &to);
             }
         }
         for (path, address) in program.located.iter().filter(|(_, at)| area(at) != Area::Output) {
@@ -74,7 +74,7 @@ impl FuncLower<'_, '_> {
             let value = self.load(from);
             return self.store(to, value);
         }
-        self.copy_value(to.place.clone(), to.ty, from.place.clone(), from.ty);
+        self.copy_aggregate(to, from);
     }
 }
 

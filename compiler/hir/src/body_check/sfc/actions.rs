@@ -226,7 +226,7 @@ fn fixed_place(place: &Place) -> Option<String> {
             PlaceStep::Member(var) => write!(text, ".{var:?}"),
             PlaceStep::Bit(n) => write!(text, ".%X{n}"),
             PlaceStep::Part(elem, n) => write!(text, ".{}{n}", elem.name()),
-            PlaceStep::Deref | PlaceStep::OpenIndex(..) => return None,
+            PlaceStep::Deref | PlaceStep::OpenIndex(..) | PlaceStep::Character { .. } => return None,
             PlaceStep::Index(indices, _) => {
                 for index in indices {
                     let ExprKind::Const(raw) = index.kind else { return None };

@@ -1,0 +1,524 @@
+//! Strings (semantics.md \[T8\] \[N2\]): where the string of an expression lies, and the operations on them.
+//!
+//! A string is a place with a capacity. One that an operation gives is built where it is to go, if that place overlaps no
+//! operand for certain; else in a temporary of the frame, from which it is copied. Bodies are in `stdlib::rt::strings`.
+
+use super::func::FuncLower;
+use super::place::Access;
+use crate::ir::{Base, Place, TextPlace, ValueId};
+use plcc_diag::bug;
+use plcc_hir::body::{Expr, ExprKind};
+use plcc_hir::{Defs, Type, TypeId};
+use plcc_stdlib::elem::Elem;
+use plcc_stdlib::funcs::TextOp;
+use plcc_stdlib::ops::Op;
+use plcc_stdlib::prim::{PrimOp, Repr};
+use plcc_stdlib::rt::strings::{TextFn, TextFns};
+use plcc_stdlib::value::longest_text;
+
+/// Strings of at most so many bytes are copied by their capacity, without looking for their end.
+const INLINE_BYTES: u32 = 128;
+
+/// No operation gives a longer string.
+const LONGEST: u32 = 1 << 20;
+
+/// A string in memory.
+#[derive(Debug, Clone)]
+pub(super) struct Text {
+    pub place: Place,
+    pub wide: bool,
+    capacity: Capacity,
+    /// Nothing but this expression knows it: a constant, or a temporary.
+    own: bool,
+    /// One of several that SEL and its kind chose at run time, maybe of the own frame.
+    chosen: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Capacity {
+    Known(u32),
+    /// Known at run time only, I32.
+    Carried(ValueId),
+}
+
+impl Text {
+    /// The capacity, if it is fixed.
+    pub fn known(&self) -> Option<u32> {
+        match self.capacity {
+            Capacity::Known(n) => Some(n),
+            Capacity::Carried(_) => None,
+        }
+    }
+
+    /// Bytes of one character.
+    pub fn unit_bytes(&self) -> u32 {
+        if self.wide { 2 } else { 1 }
+    }
+
+    /// Bytes that it takes, the closing 0 included.
+    fn bytes(&self) -> Option<u64> {
+        self.known().map(|n| (u64::from(n) + 1) * u64::from(self.unit_bytes()))
+    }
+}
+
+/// Memory for strings that expressions make; a statement uses again what the one before has left.
+#[derive(Debug, Default)]
+pub(super) struct Temps {
+    /// Place, bytes, whether it is in use.
+    rooms: Vec<(Place, u64, bool)>,
+}
+
+impl Temps {
+    /// What was taken is free again.
+    pub fn release(&mut self) {
+        self.rooms.iter_mut().for_each(|room| room.2 = false);
+    }
+
+    fn take(&mut self, bytes: u64) -> Option<Place> {
+        let free = self.rooms.iter_mut().filter(|(_, size, used)| !used && *size >= bytes);
+        let (place, _, used) = free.min_by_key(|(_, size, _)| *size)?;
+        *used = true;
+        Some(place.clone())
+    }
+}
+
+/// The capacity of the longest STRING and WSTRING that a variable can have.
+pub(super) fn longest(defs: &Defs) -> [u32; 2] {
+    let fields = defs.structs.iter().flat_map(|s| s.fields.iter().map(|f| f.ty));
+    let mut found = [0; 2];
+    for mut ty in defs.vars.iter().map(|v| v.ty).chain(fields) {
+        loop {
+            match &defs.types[ty] {
+                Type::Array { elem, .. } | Type::Ref { target: elem, .. } => ty = *elem,
+                Type::String { wide, capacity } => {
+                    let longest = &mut found[usize::from(*wide)];
+                    *longest = (*longest).max(*capacity);
+                    break;
+                }
+                _ => break,
+            }
+        }
+    }
+    found
+}
+
+impl FuncLower<'_, '_> {
+    /// Whether values of a type are strings.
+    pub fn is_text(&self, ty: TypeId) -> bool {
+        matches!(self.defs.types[ty], Type::String { .. } | Type::AnyString { .. })
+    }
+
+    /// The string that lies there; `None` if something else does.
+    pub fn text_at(&self, access: &Access) -> Option<Text> {
+        let (wide, capacity) = match self.defs.types[access.ty] {
+            Type::String { wide, capacity } => (wide, Capacity::Known(capacity)),
+            Type::AnyString { wide } => match access.capacity {
+                Some(capacity) => (wide, Capacity::Carried(capacity)),
+                None => bug!("a string without a capacity"),
+            },
+            _ => return None,
+        };
+        Some(Text { place: access.place.clone(), wide, capacity, own: false, chosen: false })
+    }
+
+    /// The inverse of [`FuncLower::text_at`], for a type of strings.
+    fn access(&mut self, text: &Text, ty: TypeId) -> Access {
+        let mut access = Self::plain(text.place.clone(), ty);
+        access.capacity = Some(self.capacity(text));
+        access
+    }
+
+    /// Makes a string empty.
+    pub fn clear_text(&mut self, text: &Text) {
+        let end = self.b.number(unit_repr(text.wide), 0);
+        self.b.store(text.place.clone(), end);
+    }
+
+    /// Where the string of an expression lies. Whatever calls a POU afterwards may change it.
+    pub fn text(&mut self, expr: &Expr) -> Text {
+        match &expr.kind {
+            ExprKind::Read(place) => {
+                let access = self.place(place);
+                self.text_at(&access).unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]))
+            }
+            ExprKind::Temp(temp) => {
+                let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
+                self.text_at(&access).unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]))
+            }
+            ExprKind::Retype(inner) => self.text(inner),
+            ExprKind::String(s) => {
+                let place = self.string_constant(s.clone(), 1);
+                Text { place, wide: false, capacity: Capacity::Known(s.len() as u32), own: true, chosen: false }
+            }
+            ExprKind::WString(s) => {
+                let bytes = s.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+                let place = self.string_constant(bytes, 2);
+                Text { place, wide: true, capacity: Capacity::Known(s.len() as u32), own: true, chosen: false }
+            }
+            ExprKind::Call(call) => {
+                let (wide, capacity) = self.string_type(expr.ty);
+                let temp = self.text_temp(wide, capacity);
+                self.call(call, Some(temp.place.clone()));
+                temp
+            }
+            ExprKind::StdCall(call) => {
+                let temp = self.text_temp(self.string_type(expr.ty).0, self.bound(expr));
+                let to = self.access(&temp, expr.ty);
+                self.std_call(call, expr.ty, Some(&to));
+                temp
+            }
+            ExprKind::Text { op, wide, args } => {
+                let operands = self.operands(args);
+                match self.chosen(*op, &operands) {
+                    Some(text) => text,
+                    None => {
+                        let temp = self.text_temp(*wide, self.bound(expr));
+                        self.build(*op, &operands, &temp);
+                        temp
+                    }
+                }
+            }
+            _ => bug!("a string from {:?}", expr.kind),
+        }
+    }
+
+    /// The same, but nothing that is evaluated afterwards changes it.
+    pub fn lasting_text(&mut self, expr: &Expr) -> Text {
+        let text = self.text(expr);
+        if text.own {
+            return text;
+        }
+        let temp = self.text_temp(text.wide, self.bound(expr));
+        self.copy_text(&temp, &text);
+        temp
+    }
+
+    /// Stores the string that an expression gives.
+    pub fn text_into(&mut self, expr: &Expr, to: &Text) {
+        let ExprKind::Text { op, wide, args } = &expr.kind else {
+            let from = self.text(expr);
+            return self.copy_text(to, &from);
+        };
+        let operands = self.operands(args);
+        if let Some(from) = self.chosen(*op, &operands) {
+            return self.copy_text(to, &from);
+        }
+        if operands.texts.iter().all(|text| disjoint(to, text)) {
+            return self.build(*op, &operands, to);
+        }
+        // Every result is cut at its end, so what does not fit there need not be made.
+        let capacity = self.bound(expr).min(to.known().unwrap_or(LONGEST));
+        let temp = self.text_temp(*wide, capacity);
+        self.build(*op, &operands, &temp);
+        self.copy_text(to, &temp);
+    }
+
+    /// Copies a string and cuts it at the capacity. The two may be the same or overlap.
+    pub fn copy_text(&mut self, to: &Text, from: &Text) {
+        if to.place == from.place && to.known().is_some_and(|n| from.known() == Some(n)) {
+            return;
+        }
+        if let (Some(room), Some(capacity)) = (to.known(), from.known())
+            && let Some(bytes) = room.min(capacity).checked_mul(to.unit_bytes())
+            && bytes <= INLINE_BYTES
+        {
+            // It ends at its first 0, wherever that is: all characters that both can hold, and a 0 behind them.
+            self.b.copy(to.place.clone(), from.place.clone(), bytes);
+            let end = self.b.number(unit_repr(to.wide), 0);
+            return self.b.store(to.place.clone().plus(bytes), end);
+        }
+        let start = self.b.number(Repr::I64, 0);
+        self.call_text(&TextFns::of(to.wide).put, &[to, from], &[start]);
+    }
+
+    /// An operation on strings that gives an elementary value.
+    pub fn text_value(&mut self, op: TextOp, wide: bool, args: &[Expr], expr: &Expr) -> ValueId {
+        let fns = TextFns::of(wide);
+        let operands = self.operands(args);
+        self.at(expr.span, "");
+        match op {
+            TextOp::Len => {
+                let length = self.call_text(&fns.len, &operands.refs(), &[]);
+                self.b.resize(length, true, Elem::Int.repr())
+            }
+            TextOp::Find => {
+                let position = self.call_text(&fns.find, &operands.refs(), &[]);
+                self.b.resize(position, true, Elem::Int.repr())
+            }
+            TextOp::Read(elem) => {
+                let code = self.b.number(Repr::I64, u64::from(elem.code()));
+                let raw = self.call_text(&fns.read, &operands.refs(), &[code]);
+                self.of_register(raw, elem)
+            }
+            TextOp::Compare(op) => {
+                let mut all: Option<ValueId> = None;
+                for pair in operands.texts.windows(2) {
+                    let holds = self.compare(op, &pair[0], &pair[1]);
+                    all = Some(match all {
+                        Some(before) => self.b.op(PrimOp::And, Repr::I8, &[before, holds]),
+                        None => holds,
+                    });
+                }
+                all.unwrap_or_else(|| bug!("a comparison of one"))
+            }
+            _ => bug!("{op:?} as a scalar"),
+        }
+    }
+
+    fn compare(&mut self, op: Op, a: &Text, b: &Text) -> ValueId {
+        // With '' the first character decides.
+        let empty = |text: &Text| text.known() == Some(0);
+        if let (Op::Eq | Op::Ne, true) = (op, empty(a) || empty(b)) {
+            let other = if empty(b) { a } else { b };
+            let repr = unit_repr(other.wide);
+            let first = self.b.load(repr, other.place.clone(), false);
+            let zero = self.b.number(repr, 0);
+            return self.b.op(if op == Op::Eq { PrimOp::Eq } else { PrimOp::Ne }, repr, &[first, zero]);
+        }
+        let order = self.call_text(&TextFns::of(a.wide).compare, &[a, b], &[]);
+        let zero = self.b.number(Repr::I64, 0);
+        let (prim, sides) = match op {
+            Op::Eq => (PrimOp::Eq, [order, zero]),
+            Op::Ne => (PrimOp::Ne, [order, zero]),
+            Op::Lt => (PrimOp::LtS, [order, zero]),
+            Op::Le => (PrimOp::LeS, [order, zero]),
+            Op::Gt => (PrimOp::LtS, [zero, order]),
+            _ => (PrimOp::LeS, [zero, order]),
+        };
+        self.b.op(prim, Repr::I64, &sides)
+    }
+
+    /// All arguments, from left to right; a string that a later argument's call could change is copied.
+    fn operands(&mut self, args: &[Expr]) -> Operands {
+        let mut operands = Operands::default();
+        for (n, arg) in args.iter().enumerate() {
+            if !self.is_text(arg.ty) {
+                operands.values.push(self.value(arg));
+                continue;
+            }
+            let later = args[n + 1..].iter().any(Expr::calls);
+            operands.texts.push(if later { self.lasting_text(arg) } else { self.text(arg) });
+        }
+        operands
+    }
+
+    /// The argument that a selection gives; `None` for what builds a new string.
+    fn chosen(&mut self, op: TextOp, operands: &Operands) -> Option<Text> {
+        let texts = &operands.texts;
+        match (op, texts.as_slice(), operands.values.as_slice()) {
+            (TextOp::Sel, [a, b], [second]) => Some(self.select(*second, b, a)),
+            (TextOp::Mux, [others @ .., last], [k]) => {
+                let mut chosen = last.clone();
+                for (n, text) in others.iter().enumerate().rev() {
+                    let number = self.b.number(Repr::I64, n as u64);
+                    let this = self.b.op(PrimOp::Eq, Repr::I64, &[*k, number]);
+                    chosen = self.select(this, text, &chosen);
+                }
+                Some(chosen)
+            }
+            (TextOp::Limit, [low, value, high], _) => {
+                let value = self.better(Op::Lt, value, low);
+                Some(self.better(Op::Gt, &value, high))
+            }
+            (TextOp::Max | TextOp::Min, [first, rest @ ..], _) => {
+                let beyond = if op == TextOp::Max { Op::Lt } else { Op::Gt };
+                Some(rest.iter().fold(first.clone(), |best, text| self.better(beyond, &best, text)))
+            }
+            _ => None,
+        }
+    }
+
+    /// `other` if `best op other`, else `best`.
+    fn better(&mut self, op: Op, best: &Text, other: &Text) -> Text {
+        let take = self.compare(op, best, other);
+        self.select(take, other, best)
+    }
+
+    /// One of two strings, by reference.
+    fn select(&mut self, cond: ValueId, yes: &Text, no: &Text) -> Text {
+        let (a, b) = (self.offset_of(yes), self.offset_of(no));
+        let at = self.b.op(PrimOp::Select, Repr::I32, &[cond, a, b]);
+        let (a, b) = (self.capacity(yes), self.capacity(no));
+        let capacity = self.b.op(PrimOp::Select, Repr::I32, &[cond, a, b]);
+        Text {
+            place: Place::new(Base::Reference(at), 0),
+            wide: yes.wide,
+            capacity: Capacity::Carried(capacity),
+            own: yes.own && no.own,
+            chosen: true,
+        }
+    }
+
+    /// Builds a string in a place that overlaps no operand.
+    fn build(&mut self, op: TextOp, operands: &Operands, to: &Text) {
+        let fns = TextFns::of(to.wide);
+        let f = match op {
+            TextOp::Concat => {
+                let mut end = self.b.number(Repr::I64, 0);
+                for text in &operands.texts {
+                    end = self.call_text(&fns.put, &[to, text], &[end]);
+                }
+                return;
+            }
+            TextOp::Write(elem) => {
+                let raw = self.register_of(operands.values[0]);
+                let code = self.b.number(Repr::I64, u64::from(elem.code()));
+                self.call_text(&fns.write, &[to], &[raw, code]);
+                return;
+            }
+            TextOp::Left => &fns.left,
+            TextOp::Right => &fns.right,
+            TextOp::Mid => &fns.mid,
+            TextOp::Insert => &fns.insert,
+            TextOp::Delete => &fns.delete,
+            TextOp::Replace => &fns.replace,
+            TextOp::Recode => &fns.recode,
+            _ => bug!("{op:?} builds no string"),
+        };
+        let texts: Vec<&Text> = std::iter::once(to).chain(&operands.texts).collect();
+        self.call_text(f, &texts, &operands.values);
+    }
+
+    fn call_text(&mut self, f: &'static TextFn, texts: &[&Text], values: &[ValueId]) -> ValueId {
+        let places: Vec<TextPlace> =
+            texts.iter().map(|text| TextPlace { place: text.place.clone(), capacity: self.capacity(text) }).collect();
+        self.b.call_text(f, &places, values)
+    }
+
+    /// A string of the frame that lasts to the end of the statement.
+    fn text_temp(&mut self, wide: bool, capacity: u32) -> Text {
+        let unit = if wide { 2 } else { 1 };
+        let bytes = (u64::from(capacity) + 1) * unit;
+        let place = self.text_temps.take(bytes).unwrap_or_else(|| {
+            let place = self.frame_room(bytes, unit);
+            self.text_temps.rooms.push((place.clone(), bytes, true));
+            place
+        });
+        Text { place, wide, capacity: Capacity::Known(capacity), own: true, chosen: false }
+    }
+
+    fn string_type(&self, ty: TypeId) -> (bool, u32) {
+        match self.defs.types[ty] {
+            Type::String { wide, capacity } => (wide, capacity),
+            Type::AnyString { wide } => (wide, self.cx.longest[usize::from(wide)]),
+            _ => bug!("{:?} as a string", self.defs.types[ty]),
+        }
+    }
+
+    /// The most characters that an expression can give.
+    fn bound(&self, expr: &Expr) -> u32 {
+        match &expr.kind {
+            ExprKind::Retype(inner) => self.bound(inner),
+            ExprKind::StdCall(call) if matches!(self.defs.types[expr.ty], Type::AnyString { .. }) => {
+                call.value.as_ref().map_or(0, |value| self.bound(value))
+            }
+            ExprKind::Text { op: TextOp::Write(elem), .. } => longest_text(*elem),
+            ExprKind::Text { op, args, .. } => {
+                let bounds = args.iter().filter(|a| self.is_text(a.ty)).map(|a| self.bound(a));
+                let bound = match op {
+                    TextOp::Concat | TextOp::Insert | TextOp::Replace => {
+                        bounds.fold(0, |sum: u32, bound| sum.saturating_add(bound))
+                    }
+                    _ => bounds.max().unwrap_or(0),
+                };
+                bound.min(LONGEST)
+            }
+            _ => self.string_type(expr.ty).1,
+        }
+    }
+
+    /// The capacity of a string, I32.
+    pub fn capacity(&mut self, text: &Text) -> ValueId {
+        match text.capacity {
+            Capacity::Known(n) => self.b.number(Repr::I32, u64::from(n)),
+            Capacity::Carried(value) => value,
+        }
+    }
+
+    fn offset_of(&mut self, text: &Text) -> ValueId {
+        match (text.place.base, text.place.offset, text.place.index.is_empty()) {
+            (Base::Reference(value), 0, true) => value,
+            _ => self.b.address_of(text.place.clone()),
+        }
+    }
+
+    /// A reference to a string with its capacity above it, as a VAR_IN_OUT of any capacity holds it.
+    pub fn packed(&mut self, text: &Text) -> ValueId {
+        let (at, capacity) = (self.offset_of(text), self.capacity(text));
+        let at = self.b.resize(at, false, Repr::I64);
+        let capacity = self.b.resize(capacity, false, Repr::I64);
+        let bits = self.b.number(Repr::I64, 32);
+        let above = self.b.op(PrimOp::Shl, Repr::I64, &[capacity, bits]);
+        self.b.op(PrimOp::Or, Repr::I64, &[above, at])
+    }
+
+    /// A value as a register holds it, zero-extended.
+    fn register_of(&mut self, value: ValueId) -> ValueId {
+        let value = match self.b.repr(value) {
+            repr @ (Repr::F32 | Repr::F64) => self.b.op(PrimOp::FBits, repr, &[value]),
+            _ => value,
+        };
+        self.b.resize(value, false, Repr::I64)
+    }
+
+    /// The value that a register holds.
+    fn of_register(&mut self, raw: ValueId, elem: Elem) -> ValueId {
+        match elem.repr() {
+            Repr::F64 => self.b.op(PrimOp::BitsF, Repr::I64, &[raw]),
+            Repr::F32 => {
+                let bits = self.b.resize(raw, false, Repr::I32);
+                self.b.op(PrimOp::BitsF, Repr::I32, &[bits])
+            }
+            repr => self.b.resize(raw, false, repr),
+        }
+    }
+}
+
+/// The evaluated arguments of an operation.
+#[derive(Debug, Default)]
+struct Operands {
+    texts: Vec<Text>,
+    values: Vec<ValueId>,
+}
+
+impl Operands {
+    fn refs(&self) -> Vec<&Text> {
+        self.texts.iter().collect()
+    }
+}
+
+fn unit_repr(wide: bool) -> Repr {
+    if wide { Repr::I16 } else { Repr::I8 }
+}
+
+/// Whether two strings share no byte for certain. The own frame is apart from everything else: what lies in it has no address
+/// that anyone else could hold while this function runs.
+fn disjoint(to: &Text, from: &Text) -> bool {
+    if from.own {
+        return true;
+    }
+    if from.chosen {
+        return false;
+    }
+    if (to.place.base == Base::Frame) != (from.place.base == Base::Frame) {
+        return true;
+    }
+    if to.place.base != from.place.base {
+        return false;
+    }
+    match (extent(to), extent(from)) {
+        (Some(a), Some(b)) => a.1 <= b.0 || b.1 <= a.0,
+        _ => false,
+    }
+}
+
+/// The bytes behind its base that a string can take: first, and behind the last.
+fn extent(text: &Text) -> Option<(i128, i128)> {
+    let bytes = i128::from(text.bytes()?);
+    let (mut first, mut last) = (i128::from(text.place.offset), i128::from(text.place.offset));
+    for term in &text.place.index {
+        first += i128::from(term.low) * i128::from(term.stride);
+        last += i128::from(term.high) * i128::from(term.stride);
+    }
+    Some((first, last + bytes))
+}

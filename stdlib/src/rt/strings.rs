@@ -1,0 +1,457 @@
+//! Strings in the region (semantics.md \[T8\] \[N2\]): the bodies of the string functions and of the conversions from and to
+//! text, for STRING (bytes) and WSTRING (little-endian UTF-16 units).
+//!
+//! A string is a place in the region and a capacity: its characters end at the first 0, or at the capacity if there is none.
+//! Every body is safe code on the bytes of the region, so it stays inside whatever the bytes are. What builds a string cuts
+//! it at the capacity of its destination and closes it with a 0; the destination must not overlap what is read, which is the
+//! caller's business: the lowering goes through a temporary unless it has proved that. Nothing allocates.
+
+use crate::elem::{Elem, Family};
+use crate::literal::prefix;
+use crate::value;
+use std::ffi::CStr;
+use std::fmt;
+use std::ops::Range;
+
+/// Where a string lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Text {
+    /// Region offset of its first character.
+    pub at: u32,
+    /// Characters that it can hold; one more unit for the closing 0 lies behind them.
+    pub capacity: u32,
+}
+
+impl Text {
+    /// In one word: the capacity above the offset. So too a reference to a `STRING` without length (\[S4\]) lies in memory.
+    pub fn pack(self) -> u64 {
+        u64::from(self.capacity) << 32 | u64::from(self.at)
+    }
+
+    /// The inverse of [`Text::pack`].
+    pub fn unpack(packed: u64) -> Self {
+        Self { at: packed as u32, capacity: (packed >> 32) as u32 }
+    }
+}
+
+/// A body that works on strings in the region. The native function takes the region's address and size (I32), each string as
+/// [`Text::pack`] makes it, then the parameters (I64); every one gives an I64.
+#[derive(Debug)]
+pub struct TextFn {
+    /// The symbol that native code calls.
+    pub symbol: &'static str,
+    /// How many strings it takes.
+    pub texts: usize,
+    /// The first string is written; then the result is its length.
+    pub builds: bool,
+    /// How many other parameters, I64.
+    pub params: usize,
+    /// Its meaning on a region and register values.
+    pub eval: fn(&mut [u8], &[Text], &[u64]) -> u64,
+    /// Its address in this process, for the JIT.
+    pub address: fn() -> *const u8,
+}
+
+/// The bodies for one kind of string.
+#[derive(Debug)]
+pub struct TextFns {
+    /// `put(dst, src; n)`: behind the first `n` characters of `dst` (which has them) those of `src`; the new length.
+    pub put: TextFn,
+    /// LEN.
+    pub len: TextFn,
+    /// -1, 0 or 1: by character code, then by length.
+    pub compare: TextFn,
+    /// LEFT(dst, IN; L).
+    pub left: TextFn,
+    /// RIGHT(dst, IN; L).
+    pub right: TextFn,
+    /// MID(dst, IN; L, P).
+    pub mid: TextFn,
+    /// INSERT(dst, IN1, IN2; P).
+    pub insert: TextFn,
+    /// DELETE(dst, IN; L, P).
+    pub delete: TextFn,
+    /// REPLACE(dst, IN1, IN2; L, P).
+    pub replace: TextFn,
+    /// FIND(IN1, IN2).
+    pub find: TextFn,
+    /// `write(dst; raw, elem)`: a value as text.
+    pub write: TextFn,
+    /// `read(IN; elem)`: the value with which a text begins.
+    pub read: TextFn,
+    /// `recode(dst, src)`: from the other kind of string.
+    pub recode: TextFn,
+}
+
+impl TextFns {
+    /// The bodies for STRING or WSTRING.
+    pub fn of(wide: bool) -> &'static TextFns {
+        if wide { &WSTRING } else { &STRING }
+    }
+
+    fn all(&self) -> [&TextFn; 13] {
+        [
+            &self.put,
+            &self.len,
+            &self.compare,
+            &self.left,
+            &self.right,
+            &self.mid,
+            &self.insert,
+            &self.delete,
+            &self.replace,
+            &self.find,
+            &self.write,
+            &self.read,
+            &self.recode,
+        ]
+    }
+}
+
+/// The greatest length and position that LEN and FIND can tell: they give INT.
+const INT_MAX: usize = i16::MAX as usize;
+
+/// One code unit of a string.
+trait Unit {
+    const BYTES: usize;
+    /// The unit that starts at a byte.
+    fn get(bytes: &[u8], n: usize) -> u16;
+    fn set(bytes: &mut [u8], n: usize, unit: u16);
+    /// Units before the first 0.
+    fn before_zero(bytes: &[u8]) -> usize;
+}
+
+struct Narrow;
+struct Wide;
+
+impl Unit for Narrow {
+    const BYTES: usize = 1;
+    fn get(bytes: &[u8], n: usize) -> u16 {
+        u16::from(bytes[n])
+    }
+    fn set(bytes: &mut [u8], n: usize, unit: u16) {
+        bytes[n] = unit as u8;
+    }
+    fn before_zero(bytes: &[u8]) -> usize {
+        CStr::from_bytes_until_nul(bytes).map_or(bytes.len(), CStr::count_bytes)
+    }
+}
+
+impl Unit for Wide {
+    const BYTES: usize = 2;
+    fn get(bytes: &[u8], n: usize) -> u16 {
+        u16::from_le_bytes([bytes[2 * n], bytes[2 * n + 1]])
+    }
+    fn set(bytes: &mut [u8], n: usize, unit: u16) {
+        bytes[2 * n..2 * n + 2].copy_from_slice(&unit.to_le_bytes());
+    }
+    fn before_zero(bytes: &[u8]) -> usize {
+        bytes.chunks_exact(2).position(|unit| unit == [0, 0]).unwrap_or(bytes.len() / 2)
+    }
+}
+
+/// The bytes of the characters of a string. One outside the region (no caller has such) counts as cut or empty.
+fn characters<U: Unit>(mem: &[u8], text: Text) -> Range<usize> {
+    let start = (text.at as usize).min(mem.len());
+    let room = (mem.len() - start) / U::BYTES;
+    let end = start + room.min(text.capacity as usize) * U::BYTES;
+    start..start + U::before_zero(&mem[start..end]) * U::BYTES
+}
+
+/// Units in a range of bytes.
+fn count<U: Unit>(range: &Range<usize>) -> usize {
+    range.len() / U::BYTES
+}
+
+/// A range without its first `n` units, all of which it has.
+fn from<U: Unit>(range: &Range<usize>, n: usize) -> Range<usize> {
+    range.start + n * U::BYTES..range.end
+}
+
+/// The first `n` units of a range that has so many.
+fn first<U: Unit>(range: &Range<usize>, n: usize) -> Range<usize> {
+    range.start..range.start + n * U::BYTES
+}
+
+/// Copies characters behind the first `n` of `dst` and closes the string; the new length.
+fn put<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Range<usize>) -> usize {
+    let start = dst.at as usize;
+    let units = mem.len().saturating_sub(start) / U::BYTES;
+    let Some(room) = units.checked_sub(1) else { return 0 };
+    let n = n.min(dst.capacity as usize).min(room);
+    let more = count::<U>(&src).min(dst.capacity as usize - n).min(room - n);
+    mem.copy_within(first::<U>(&src, more), start + n * U::BYTES);
+    U::set(&mut mem[start..], n + more, 0);
+    n + more
+}
+
+/// A length or position as the language counts: a negative one is 0, one beyond any string is as good as its end.
+fn number(raw: u64) -> usize {
+    usize::try_from((raw as i64).max(0)).unwrap_or(usize::MAX)
+}
+
+/// The start of the characters from position P on, and behind L of them; `None` if P is outside.
+fn part(length: usize, l: u64, p: u64) -> Option<(usize, usize)> {
+    let start = number(p).checked_sub(1).filter(|start| *start < length)?;
+    Some((start, start + number(l).min(length - start)))
+}
+
+fn len<U: Unit>(mem: &mut [u8], [a]: [Text; 1], _: [u64; 0]) -> u64 {
+    count::<U>(&characters::<U>(mem, a)).min(INT_MAX) as u64
+}
+
+fn compare<U: Unit>(mem: &mut [u8], [a, b]: [Text; 2], _: [u64; 0]) -> u64 {
+    let (a, b) = (&mem[characters::<U>(mem, a)], &mem[characters::<U>(mem, b)]);
+    let order = if U::BYTES == 1 {
+        a.cmp(b)
+    } else {
+        let unit = |s: &[u8], n: usize| U::get(s, n);
+        let (m, n) = (a.len() / U::BYTES, b.len() / U::BYTES);
+        (0..m).map(|i| unit(a, i)).cmp((0..n).map(|i| unit(b, i)))
+    };
+    order as i64 as u64
+}
+
+fn append<U: Unit>(mem: &mut [u8], [dst, src]: [Text; 2], [n]: [u64; 1]) -> u64 {
+    let src = characters::<U>(mem, src);
+    put::<U>(mem, dst, number(n), src) as u64
+}
+
+fn left<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
+    let a = characters::<U>(mem, a);
+    let l = number(l).min(count::<U>(&a));
+    put::<U>(mem, dst, 0, first::<U>(&a, l)) as u64
+}
+
+fn right<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
+    let a = characters::<U>(mem, a);
+    let skip = count::<U>(&a).saturating_sub(number(l));
+    put::<U>(mem, dst, 0, from::<U>(&a, skip)) as u64
+}
+
+fn mid<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l, p]: [u64; 2]) -> u64 {
+    let a = characters::<U>(mem, a);
+    let (start, end) = part(count::<U>(&a), l, p).unwrap_or((0, 0));
+    let middle = from::<U>(&first::<U>(&a, end), start);
+    put::<U>(mem, dst, 0, middle) as u64
+}
+
+fn insert<U: Unit>(mem: &mut [u8], [dst, a, b]: [Text; 3], [p]: [u64; 1]) -> u64 {
+    let (a, b) = (characters::<U>(mem, a), characters::<U>(mem, b));
+    let p = number(p);
+    if p > count::<U>(&a) {
+        return put::<U>(mem, dst, 0, a) as u64;
+    }
+    splice::<U>(mem, dst, a, (p, p), Some(b))
+}
+
+fn delete<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l, p]: [u64; 2]) -> u64 {
+    let a = characters::<U>(mem, a);
+    let length = count::<U>(&a);
+    splice::<U>(mem, dst, a, part(length, l, p).unwrap_or((length, length)), None)
+}
+
+fn replace<U: Unit>(mem: &mut [u8], [dst, a, b]: [Text; 3], [l, p]: [u64; 2]) -> u64 {
+    let (a, b) = (characters::<U>(mem, a), characters::<U>(mem, b));
+    match part(count::<U>(&a), l, p) {
+        Some(out) => splice::<U>(mem, dst, a, out, Some(b)),
+        None => put::<U>(mem, dst, 0, a) as u64,
+    }
+}
+
+/// `a` with other characters in place of those from `start` up to `end`.
+fn splice<U: Unit>(
+    mem: &mut [u8],
+    dst: Text,
+    a: Range<usize>,
+    (start, end): (usize, usize),
+    new: Option<Range<usize>>,
+) -> u64 {
+    let mut n = put::<U>(mem, dst, 0, first::<U>(&a, start));
+    if let Some(new) = new {
+        n = put::<U>(mem, dst, n, new);
+    }
+    put::<U>(mem, dst, n, from::<U>(&a, end)) as u64
+}
+
+/// The position of the first occurrence; 0 if there is none, and for an empty text.
+fn find<U: Unit>(mem: &mut [u8], [a, b]: [Text; 2], _: [u64; 0]) -> u64 {
+    let (a, b) = (&mem[characters::<U>(mem, a)], &mem[characters::<U>(mem, b)]);
+    if b.is_empty() {
+        return 0;
+    }
+    let at = a.windows(b.len()).step_by(U::BYTES).position(|window| window == b);
+    at.map_or(0, |at| (at + 1).min(INT_MAX) as u64)
+}
+
+/// Appends to a string, cuts at its capacity.
+struct Writer<'m, U> {
+    mem: &'m mut [u8],
+    dst: Text,
+    length: usize,
+    unit: std::marker::PhantomData<U>,
+}
+
+impl<'m, U: Unit> Writer<'m, U> {
+    fn new(mem: &'m mut [u8], dst: Text) -> Self {
+        let mut writer = Self { mem, dst, length: 0, unit: std::marker::PhantomData };
+        writer.close();
+        writer
+    }
+
+    fn unit(&mut self, unit: u16) {
+        let start = (self.dst.at as usize).min(self.mem.len());
+        let units = (self.mem.len() - start) / U::BYTES;
+        if self.length < self.dst.capacity as usize && self.length + 1 < units {
+            U::set(&mut self.mem[start..], self.length, unit);
+            self.length += 1;
+            self.close();
+        }
+    }
+
+    fn close(&mut self) {
+        let start = (self.dst.at as usize).min(self.mem.len());
+        if (self.length + 1) * U::BYTES <= self.mem.len() - start {
+            U::set(&mut self.mem[start..], self.length, 0);
+        }
+    }
+}
+
+impl<U: Unit> fmt::Write for Writer<'_, U> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        // Values are ASCII, but for a CHAR, which is one unit.
+        text.chars().for_each(|c| self.unit(c as u32 as u16));
+        Ok(())
+    }
+}
+
+fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [raw, elem]: [u64; 2]) -> u64 {
+    let mut out = Writer::<U>::new(mem, dst);
+    let Some(elem) = Elem::from_code(elem as u8) else { return 0 };
+    if elem.family() == Family::Char {
+        if raw != 0 {
+            out.unit(narrowed::<U>(raw as u16));
+        }
+    } else {
+        // The writer takes everything.
+        let _ = value::write_text(&mut out, elem, raw);
+    }
+    out.length as u64
+}
+
+/// A unit that a STRING cannot hold becomes a question mark.
+fn narrowed<U: Unit>(unit: u16) -> u16 {
+    if U::BYTES == 1 && unit > 0xFF { u16::from(b'?') } else { unit }
+}
+
+/// No number of a WSTRING is looked at beyond so many characters.
+const LONGEST_NUMBER: usize = 1024;
+
+fn read<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [elem]: [u64; 1]) -> u64 {
+    let Some(elem) = Elem::from_code(elem as u8) else { return 0 };
+    let a = &mem[characters::<U>(mem, a)];
+    if elem.family() == Family::Char {
+        let unit = if a.is_empty() { 0 } else { U::get(a, 0) };
+        return if elem == Elem::Char { u64::from(narrowed::<Narrow>(unit)) } else { u64::from(unit) };
+    }
+    if U::BYTES == 1 {
+        return prefix::value(elem, a);
+    }
+    let mut text = [0; LONGEST_NUMBER];
+    let units = (0..a.len() / U::BYTES).map(|n| U::get(a, n)).skip_while(|unit| *unit == 0x20 || *unit == 0x09);
+    let mut length = 0;
+    for (to, unit) in text.iter_mut().zip(units.take_while(|unit| *unit < 0x80)) {
+        *to = unit as u8;
+        length += 1;
+    }
+    prefix::value(elem, &text[..length])
+}
+
+fn recode<To: Unit, From: Unit>(mem: &mut [u8], [dst, src]: [Text; 2], _: [u64; 0]) -> u64 {
+    let src = characters::<From>(mem, src);
+    let length = count::<From>(&src);
+    let mut out = Writer::<To>::new(mem, dst);
+    for n in 0..length {
+        let unit = From::get(&out.mem[src.clone()], n);
+        out.unit(narrowed::<To>(unit));
+    }
+    out.length as u64
+}
+
+macro_rules! bodies {
+    ($($set:ident $doc:literal {
+        $($field:ident $symbol:ident $builds:literal ($($text:ident)+; $($param:ident)*) $body:expr;)*
+    })*) => {
+        mod c {
+            use super::*;
+            $($(
+                /// # Safety
+                /// `region` points to `size` bytes that nobody else uses meanwhile.
+                #[unsafe(no_mangle)]
+                pub unsafe extern "C" fn $symbol(region: *mut u8, size: u32, $($text: u64,)+ $($param: u64),*) -> u64 {
+                    // SAFETY: the caller's promise.
+                    let mem = unsafe { std::slice::from_raw_parts_mut(region, size as usize) };
+                    ($body)(mem, [$(Text::unpack($text)),+], [$($param),*])
+                }
+            )*)*
+        }
+        $(
+            #[doc = $doc]
+            pub static $set: TextFns = TextFns {
+                $($field: TextFn {
+                    symbol: stringify!($symbol),
+                    texts: [$(stringify!($text)),+].len(),
+                    builds: $builds,
+                    params: <[&str]>::len(&[$(stringify!($param)),*]),
+                    eval: |mem, texts, params| {
+                        // A caller's mistake gives a number, not a panic.
+                        let (Ok(texts), Ok(params)) = (texts.try_into(), params.try_into()) else { return 0 };
+                        ($body)(mem, texts, params)
+                    },
+                    address: || c::$symbol as *const u8,
+                },)*
+            };
+        )*
+    };
+}
+
+bodies! {
+    STRING "The bodies for STRING." {
+        put plcc_string_put true (dst src; n) append::<Narrow>;
+        len plcc_string_len false (a;) len::<Narrow>;
+        compare plcc_string_compare false (a b;) compare::<Narrow>;
+        left plcc_string_left true (dst a; l) left::<Narrow>;
+        right plcc_string_right true (dst a; l) right::<Narrow>;
+        mid plcc_string_mid true (dst a; l p) mid::<Narrow>;
+        insert plcc_string_insert true (dst a b; p) insert::<Narrow>;
+        delete plcc_string_delete true (dst a; l p) delete::<Narrow>;
+        replace plcc_string_replace true (dst a b; l p) replace::<Narrow>;
+        find plcc_string_find false (a b;) find::<Narrow>;
+        write plcc_string_write true (dst; raw elem) write::<Narrow>;
+        read plcc_string_read false (a; elem) read::<Narrow>;
+        recode plcc_string_recode true (dst src;) recode::<Narrow, Wide>;
+    }
+    WSTRING "The bodies for WSTRING." {
+        put plcc_wstring_put true (dst src; n) append::<Wide>;
+        len plcc_wstring_len false (a;) len::<Wide>;
+        compare plcc_wstring_compare false (a b;) compare::<Wide>;
+        left plcc_wstring_left true (dst a; l) left::<Wide>;
+        right plcc_wstring_right true (dst a; l) right::<Wide>;
+        mid plcc_wstring_mid true (dst a; l p) mid::<Wide>;
+        insert plcc_wstring_insert true (dst a b; p) insert::<Wide>;
+        delete plcc_wstring_delete true (dst a; l p) delete::<Wide>;
+        replace plcc_wstring_replace true (dst a b; l p) replace::<Wide>;
+        find plcc_wstring_find false (a b;) find::<Wide>;
+        write plcc_wstring_write true (dst; raw elem) write::<Wide>;
+        read plcc_wstring_read false (a; elem) read::<Wide>;
+        recode plcc_wstring_recode true (dst src;) recode::<Wide, Narrow>;
+    }
+}
+
+/// The function with this symbol.
+pub fn find_symbol(symbol: &str) -> Option<&'static TextFn> {
+    STRING.all().into_iter().chain(WSTRING.all()).find(|f| f.symbol == symbol)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,201 @@
+use super::*;
+
+/// Calls a body on strings in a region of their own, each of a capacity, with bytes around that must stay. The first text
+/// of a builder is its destination.
+fn call(wide: bool, f: &TextFn, texts: &[(&str, u32)], params: &[i64]) -> (String, u64) {
+    let bytes = if wide { 2 } else { 1 };
+    let mut mem = vec![0xAA; 16];
+    let mut places = Vec::new();
+    for (text, capacity) in texts {
+        let at = mem.len() as u32;
+        let mut units: Vec<u16> = text.encode_utf16().collect();
+        units.resize(*capacity as usize + 1, 0);
+        for unit in units {
+            mem.extend(&unit.to_le_bytes()[..bytes]);
+        }
+        mem.extend([0xAA; 16]);
+        places.push(Text { at, capacity: *capacity });
+    }
+    let before = mem.clone();
+    let params: Vec<u64> = params.iter().map(|p| *p as u64).collect();
+    let result = (f.eval)(&mut mem, &places, &params);
+    let (start, end) = (places[0].at as usize, places[0].at as usize + (places[0].capacity as usize + 1) * bytes);
+    assert_eq!(mem[..start], before[..start], "{} wrote in front of its destination", f.symbol);
+    assert_eq!(mem[end..], before[end..], "{} wrote behind its destination", f.symbol);
+    if !f.builds {
+        assert_eq!(mem, before, "{} wrote", f.symbol);
+        return (String::new(), result);
+    }
+    let unit = |n: usize| if wide { Wide::get(&mem[start..], n) } else { Narrow::get(&mem[start..], n) };
+    let units: Vec<u16> = (0..=places[0].capacity as usize).map(unit).take_while(|u| *u != 0).collect();
+    assert!(units.len() <= places[0].capacity as usize, "{} left no 0 at the end", f.symbol);
+    assert_eq!(units.len() as u64, result, "{} tells another length", f.symbol);
+    (String::from_utf16_lossy(&units), result)
+}
+
+/// What a body builds, the same for both kinds of string.
+fn built(pick: fn(&TextFns) -> &TextFn, capacity: u32, texts: &[(&str, u32)], params: &[i64]) -> String {
+    let all: Vec<(&str, u32)> = [("junk!!!!!!!!!!!!"[..capacity.min(16) as usize].as_ref(), capacity)]
+        .into_iter()
+        .chain(texts.iter().copied())
+        .collect();
+    let narrow = call(false, pick(&STRING), &all, params).0;
+    assert_eq!(narrow, call(true, pick(&WSTRING), &all, params).0);
+    narrow
+}
+
+fn number_of(pick: fn(&TextFns) -> &TextFn, texts: &[(&str, u32)], params: &[i64]) -> i64 {
+    let narrow = call(false, pick(&STRING), texts, params).1;
+    assert_eq!(narrow, call(true, pick(&WSTRING), texts, params).1);
+    narrow as i64
+}
+
+const ABC: (&str, u32) = ("abcdef", 6);
+
+#[test]
+fn parts() {
+    let left = |l| built(|f| &f.left, 8, &[ABC], &[l]);
+    assert_eq!(
+        [left(0), left(3), left(6), left(7), left(i64::MAX), left(-1)],
+        ["", "abc", "abcdef", "abcdef", "abcdef", ""]
+    );
+    let right = |l| built(|f| &f.right, 8, &[ABC], &[l]);
+    assert_eq!([right(0), right(2), right(6), right(99), right(i64::MIN)], ["", "ef", "abcdef", "abcdef", ""]);
+    let mid = |l, p| built(|f| &f.mid, 8, &[ABC], &[l, p]);
+    assert_eq!([mid(2, 1), mid(2, 5), mid(2, 6), mid(9, 2)], ["ab", "ef", "f", "bcdef"]);
+    assert_eq!([mid(2, 0), mid(2, -3), mid(2, 7), mid(0, 2), mid(-1, 2), mid(i64::MAX, i64::MAX)], [""; 6]);
+}
+
+#[test]
+fn changes() {
+    let insert = |p| built(|f| &f.insert, 10, &[ABC, ("XY", 2)], &[p]);
+    assert_eq!([insert(0), insert(2), insert(6)], ["XYabcdef", "abXYcdef", "abcdefXY"]);
+    assert_eq!([insert(7), insert(-1)], ["abcdef", "XYabcdef"]);
+    let delete = |l, p| built(|f| &f.delete, 10, &[ABC], &[l, p]);
+    assert_eq!([delete(2, 1), delete(2, 3), delete(2, 6), delete(99, 2)], ["cdef", "abef", "abcde", "a"]);
+    assert_eq!([delete(2, 0), delete(2, -1), delete(2, 7), delete(0, 3), delete(-5, 3)], ["abcdef"; 5]);
+    let replace = |l, p| built(|f| &f.replace, 10, &[ABC, ("XY", 2)], &[l, p]);
+    assert_eq!(
+        [replace(2, 1), replace(1, 3), replace(0, 3), replace(9, 5)],
+        ["XYcdef", "abXYdef", "abXYcdef", "abcdXY"]
+    );
+    assert_eq!([replace(2, 0), replace(2, 7), replace(2, -2)], ["abcdef"; 3]);
+}
+
+#[test]
+fn destinations_cut() {
+    assert_eq!(built(|f| &f.insert, 4, &[ABC, ("XY", 2)], &[3]), "abcX");
+    assert_eq!(built(|f| &f.left, 3, &[ABC], &[6]), "abc");
+    assert_eq!(built(|f| &f.replace, 1, &[ABC, ("XY", 2)], &[1, 1]), "X");
+    assert_eq!(built(|f| &f.put, 8, &[("xyz", 3)], &[5]), "junk!xyz");
+    assert_eq!(built(|f| &f.put, 6, &[("xyz", 3)], &[5]), "junk!x");
+    assert_eq!(built(|f| &f.put, 6, &[("xyz", 3)], &[99]), "junk!!");
+}
+
+#[test]
+fn lengths_positions_order() {
+    let len = |text| number_of(|f| &f.len, &[text], &[]);
+    assert_eq!([len(("", 3)), len(("ab", 3)), len(ABC)], [0, 2, 6]);
+    let find = |b| number_of(|f| &f.find, &[ABC, (b, 9)], &[]);
+    assert_eq!([find("a"), find("cd"), find("f"), find("fg"), find(""), find("abcdefg")], [1, 3, 6, 0, 0, 0]);
+    // 16#6261 stands in `aab` at an odd byte of a WSTRING only.
+    assert_eq!(call(true, &WSTRING.find, &[("\u{6100}\u{6261}", 4), ("\u{6161}", 1)], &[]).1, 0);
+    let compare = |a, b| number_of(|f| &f.compare, &[(a, 9), (b, 9)], &[]);
+    assert_eq!([compare("a", "a"), compare("", ""), compare("a", "b"), compare("b", "ab")], [0, 0, -1, 1]);
+    assert_eq!([compare("a", "ab"), compare("ab", "a"), compare("A", "a"), compare("\u{e4}", "z")], [-1, 1, -1, 1]);
+    assert_eq!(call(true, &WSTRING.compare, &[("\u{100}", 1), ("\u{ff}", 1)], &[]).1 as i64, 1, "by units, not bytes");
+}
+
+#[test]
+fn a_long_string_is_told_up_to_the_greatest_int() {
+    let mut mem = vec![b'a'; 40_001];
+    mem[40_000] = 0;
+    let text = Text { at: 0, capacity: 40_000 };
+    assert_eq!((STRING.len.eval)(&mut mem, &[text], &[]), 32767);
+    mem[39_999] = b'b';
+    let at = mem.len() as u32;
+    mem.extend(b"b\0");
+    assert_eq!((STRING.find.eval)(&mut mem, &[text, Text { at, capacity: 1 }], &[]), 32767);
+}
+
+#[test]
+fn values_to_text_and_back() {
+    let text = |elem: Elem, raw: u64| {
+        let params = [raw as i64, i64::from(elem.code())];
+        built(|f| &f.write, 40, &[], &params)
+    };
+    assert_eq!(text(Elem::Int, 0xFFFB), "-5");
+    assert_eq!(text(Elem::Bool, 1), "TRUE");
+    assert_eq!(text(Elem::Byte, 255), "255");
+    assert_eq!(text(Elem::Real, u64::from(0.1f32.to_bits())), "0.1");
+    assert_eq!(text(Elem::Lreal, 1.5f64.to_bits()), "1.5");
+    assert_eq!(text(Elem::Time, 1_500_000_000), "T#1s500ms");
+    assert_eq!(text(Elem::Char, u64::from(b'x')), "x");
+    assert_eq!(text(Elem::Char, 0), "");
+    assert_eq!(built(|f| &f.write, 3, &[], &[12345, i64::from(Elem::Dint.code())]), "123");
+    let wchar = i64::from(Elem::Wchar.code());
+    assert_eq!(call(true, &WSTRING.write, &[("", 1)], &[0xD83D, wchar]).1, 1, "half a pair is a unit too");
+    assert_eq!(call(false, &STRING.write, &[("", 1)], &[0x20AC, wchar]).0, "?");
+    let read = |elem: Elem, t: &str| number_of(|f| &f.read, &[(t, 40)], &[i64::from(elem.code())]) as u64;
+    assert_eq!(read(Elem::Int, " -5x"), 0xFFFB);
+    assert_eq!(read(Elem::Lreal, "2.5e-1"), 0.25f64.to_bits());
+    assert_eq!(read(Elem::Time, "T#1s500ms"), 1_500_000_000);
+    assert_eq!(read(Elem::Char, "xy"), u64::from(b'x'));
+    assert_eq!(read(Elem::Char, ""), 0);
+    assert_eq!(call(true, &WSTRING.read, &[("7\u{20ac}1", 4)], &[i64::from(Elem::Int.code())]).1, 7);
+}
+
+#[test]
+fn between_the_two_kinds() {
+    let mut mem = vec![0; 64];
+    mem[..4].copy_from_slice(b"a\xE4z\0");
+    let (narrow, wide) = (Text { at: 0, capacity: 3 }, Text { at: 8, capacity: 5 });
+    assert_eq!((WSTRING.recode.eval)(&mut mem, &[wide, narrow], &[]), 3);
+    assert_eq!(mem[8..16], [b'a', 0, 0xE4, 0, b'z', 0, 0, 0]);
+    mem[10..12].copy_from_slice(&0x20ACu16.to_le_bytes());
+    assert_eq!((STRING.recode.eval)(&mut mem, &[Text { at: 0, capacity: 2 }, wide], &[]), 2);
+    assert_eq!(mem[..3], *b"a?\0");
+}
+
+/// Whatever offsets, capacities and bytes come, a body stays inside the region and changes nothing but its destination.
+#[test]
+fn nothing_leaves_the_region() {
+    let mut seed = 0x1234_5678_9ABC_DEF1u64;
+    let mut random = move |n: u64| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        seed % n
+    };
+    for _ in 0..40_000 {
+        let set = TextFns::of(random(2) == 1);
+        let f = set.all()[random(13) as usize];
+        let mut mem: Vec<u8> = (0..random(64)).map(|_| b"\0\0ab1.-"[random(7) as usize]).collect();
+        let before = mem.clone();
+        let texts: Vec<Text> =
+            (0..f.texts).map(|_| Text { at: random(80) as u32, capacity: random(40) as u32 }).collect();
+        let params: Vec<u64> =
+            (0..f.params).map(|_| [0, 1, 5, u64::MAX, 1 << 63, 20, random(25)][random(7) as usize]).collect();
+        (f.eval)(&mut mem, &texts, &params);
+        let end = u64::from(texts[0].at) + (u64::from(texts[0].capacity) + 1) * 2;
+        for (n, (a, b)) in before.iter().zip(&mem).enumerate() {
+            let inside = f.builds && (u64::from(texts[0].at)..end).contains(&(n as u64));
+            assert!(a == b || inside, "{} changed byte {n}", f.symbol);
+        }
+    }
+}
+
+#[test]
+fn native_and_evaluated_are_one() {
+    let mut mem = *b"hello\0\0\0";
+    let text = Text { at: 0, capacity: 5 }.pack();
+    assert_eq!(Text::unpack(text), Text { at: 0, capacity: 5 });
+    // SAFETY: the region is `mem`, whole.
+    assert_eq!(unsafe { c::plcc_string_len(mem.as_mut_ptr(), 8, text) }, 5);
+    for f in STRING.all().into_iter().chain(WSTRING.all()) {
+        assert!(!(f.address)().is_null());
+        assert!(find_symbol(f.symbol).is_some_and(|g| std::ptr::eq(f, g)));
+        // A caller's mistake gives a number, not a panic.
+        (f.eval)(&mut [], &[], &[]);
+    }
+}
