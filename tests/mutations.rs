@@ -1,0 +1,158 @@
+//! Damaged programs: the sources of all cases and examples with words removed, doubled, moved and exchanged between them.
+//! None may make the parser, the checker or the lowering panic or hang; what still compiles must pass the verifier.
+//!
+//! `MUTATIONS=1000000 cargo test --release -p plcc-tests --test mutations` is the long run; `MUTATION_SEED` is the first seed. A
+//! failure names its seed: `MUTATIONS=1 MUTATION_SEED=n` repeats it and prints the source.
+
+use fastrand::Rng;
+use plcc_hir::Profile;
+use plcc_tests::compile::compile;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// More than any of these small sources needs, on a busy machine too.
+const LIMIT: Duration = Duration::from_secs(20);
+/// The stack that the driver gives to its pipeline.
+const STACK_BYTES: usize = 512 << 20;
+
+fn number(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
+fn sources(folder: &Path, out: &mut Vec<String>) {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut paths: Vec<_> = entries.map(|e| e.expect("an entry").path()).collect();
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            sources(&path, out);
+        } else if path.extension().is_some_and(|e| e == "st") {
+            out.push(std::fs::read_to_string(&path).unwrap_or_default());
+        }
+    }
+}
+
+/// Pieces between which a source is cut: words, and the signs between them.
+fn words(text: &str) -> Vec<&str> {
+    text.split_inclusive(|c: char| !c.is_alphanumeric() && c != '_').collect()
+}
+
+/// Signs and words that a random place seldom has.
+const RARE: [&str; 24] = [
+    "(* ",
+    "*) ",
+    "' ",
+    "\" ",
+    "END_IF ",
+    "END_VAR ",
+    "^ ",
+    "[",
+    "] ",
+    "( ",
+    ") ",
+    ":= ",
+    "=> ",
+    "..",
+    "# ",
+    "% ",
+    "{",
+    "} ",
+    "9223372036854775808 ",
+    "-1 ",
+    "T#1d ",
+    "REF_TO ",
+    "ARRAY [*] OF ",
+    "NULL ",
+];
+
+/// One to six changes, with pieces of another source.
+fn damage(rng: &mut Rng, text: &str, other: &str) -> String {
+    let (mut list, others) = (words(text), words(other));
+    for _ in 0..rng.usize(1..=6) {
+        let (a, b) = (rng.usize(..list.len().max(1)), rng.usize(..list.len().max(1)));
+        if list.is_empty() {
+            break;
+        }
+        match rng.u8(..8) {
+            0 => drop(list.remove(a)),
+            1 => list.insert(a, list[b]),
+            2 => list.swap(a, b),
+            3 => list[a] = list[b],
+            4 => {
+                let from = rng.usize(..others.len().max(1));
+                let piece = &others[from.min(others.len())..(from + rng.usize(1..12)).min(others.len())];
+                list.splice(a..a, piece.iter().copied());
+            }
+            5 => {
+                let end = (a + rng.usize(1..20)).min(list.len());
+                list.drain(a..end);
+            }
+            6 => list.insert(a, RARE[rng.usize(..RARE.len())]),
+            _ => {
+                if let Some(word) = others.get(rng.usize(..others.len().max(1))) {
+                    list[a] = word;
+                }
+            }
+        }
+    }
+    list.concat()
+}
+
+/// Why a source is no good test of robustness any more: the compiler broke on it.
+fn problem(text: &str, profile: Profile) -> Option<String> {
+    let start = Instant::now();
+    let result = catch_unwind(AssertUnwindSafe(|| compile(text, profile)));
+    let time = start.elapsed();
+    match result {
+        Err(panic) => {
+            let said = panic.downcast_ref::<String>().cloned();
+            let said = said.or_else(|| panic.downcast_ref::<&str>().map(|s| s.to_string()));
+            Some(format!("panic: {}", said.unwrap_or_default()))
+        }
+        Ok(Err(e)) if e.starts_with("verifier") => Some(e),
+        Ok(_) if time > LIMIT => Some(format!("took {time:?}")),
+        Ok(_) => None,
+    }
+}
+
+#[test]
+fn no_damage_breaks_the_compiler() {
+    let mut corpus = Vec::new();
+    let tests = plcc_tests::root();
+    sources(&tests.join("cases"), &mut corpus);
+    sources(&plcc_tests::project_root().join("examples"), &mut corpus);
+    assert!(corpus.len() > 100);
+    let (count, first) = (number("MUTATIONS", 1500), number("MUTATION_SEED", 1));
+    let next = AtomicU64::new(first);
+    let work = || {
+        let mut failures = Vec::new();
+        loop {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if seed >= first + count {
+                return failures;
+            }
+            let mut rng = Rng::with_seed(seed);
+            let (a, b) = (rng.usize(..corpus.len()), rng.usize(..corpus.len()));
+            let text = damage(&mut rng, &corpus[a], &corpus[b]);
+            let profile = if rng.bool() { Profile::Codesys } else { Profile::Strict };
+            if let Some(why) = problem(&text, profile) {
+                failures.push((seed, why, text));
+            }
+        }
+    };
+    let failures: Vec<_> = std::thread::scope(|scope| {
+        let spawn =
+            |_| std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, work).expect("a thread");
+        let threads: Vec<_> = (0..2).map(spawn).collect();
+        threads.into_iter().flat_map(|t| t.join().expect("a worker")).collect()
+    });
+    for (seed, why, text) in failures.iter().take(10) {
+        println!("seed {seed}: {why}");
+        if count <= 10 {
+            println!("{text}");
+        }
+    }
+    assert!(failures.is_empty(), "{} of {count} damaged sources broke the compiler", failures.len());
+}
