@@ -117,6 +117,8 @@ fn examples_give_their_traces() {
         ),
         ("trip", "240", "Main.boiler.pressure,Main.tripped,Main.burner,Main.first"),
         ("interlock", "200", "Main.drive.left,Main.drive.right,Main.k1.closed,Main.k2.closed,Main.danger"),
+        ("control_loop", "900", "Main.seconds,Main.setpoint,Main.temperature,Main.power,Main.load"),
+        ("plant_states", "60", "Main.room.temp,Main.unit.state,Main.switch,Main.alarm"),
     ] {
         let example = project_root().join("examples").join(name);
         let folder = tempfile::tempdir().expect("a folder");

@@ -147,6 +147,18 @@ impl LiteralError {
                 };
                 Some(format!("write `{meant}`"))
             }
+            LiteralError::BadDigit { base, .. } => {
+                let digits = match base {
+                    2 => "0 and 1",
+                    8 => "0 to 7",
+                    16 => "0 to 9 and A to F",
+                    _ => "0 to 9",
+                };
+                Some(format!("its digits are {digits}"))
+            }
+            LiteralError::UnitOrder { .. } => Some("write for example T#1d2h3m4s5ms".to_string()),
+            LiteralError::UnitOverflow { .. } => Some("carry it over: T#1d25h is T#2d1h".to_string()),
+            LiteralError::FractionNotLast { .. } => Some("T#1.5h3m is T#1h33m".to_string()),
             LiteralError::NulCharacter { .. } => Some("end the string before it, or set its length".to_string()),
             LiteralError::NotLatin1 { .. } => Some("use a WSTRING: \"...\"".to_string()),
             _ => None,

@@ -14,6 +14,12 @@ fn errors(diags: &Diagnostics, sources: &SourceMap) -> String {
 
 /// Reads and checks one source in a profile; `Err` has its errors.
 pub fn check(text: &str, profile: Profile) -> Result<Checked, String> {
+    let (checked, diags, sources) = diagnose(text, profile);
+    if diags.has_errors() { Err(errors(&diags, &sources)) } else { Ok(checked) }
+}
+
+/// Reads and checks one source in a profile, with all messages and the texts they point into.
+pub fn diagnose(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMap) {
     let mut sources = SourceMap::new();
     let mut diags = Diagnostics::new();
     let mut files = Vec::new();
@@ -28,7 +34,7 @@ pub fn check(text: &str, profile: Profile) -> Result<Checked, String> {
         .map(|(file, profile, builtin, ast)| Unit { file: *file, ast, profile: *profile, builtin: *builtin })
         .collect();
     let checked = plcc_hir::check(&units, &Selection::default(), &mut diags);
-    if diags.has_errors() { Err(errors(&diags, &sources)) } else { Ok(checked) }
+    (checked, diags, sources)
 }
 
 /// A source with one PROGRAM or a CONFIGURATION to verified MIR.

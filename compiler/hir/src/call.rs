@@ -463,7 +463,7 @@ impl<'a> Checker<'_, 'a> {
         let ty = self.type_of_var(param);
         if self.cx.defs.vars[param].section == Section::InOut {
             let Some(place) = self.place(e) else { return false };
-            if !self.check_writable(&place) || !self.in_out_fits(param, ty, &place) {
+            if !self.in_out_fits(param, ty, &place) || !self.check_writable(&place) {
                 return false;
             }
             if !self.addressable(&place, "a VAR_IN_OUT") {

@@ -334,8 +334,11 @@ fn declare_var<'a>(
     name: &'a ast::Name,
 ) {
     let key = fold(&name.text);
-    if let Some(first) = cx.pou_slots[id].scope.get(&key) {
-        let first = match first {
+    if let Some(&first) = cx.pou_slots[id].scope.get(&key) {
+        if let Local::Var(var) = first {
+            doubt_type(cx, var, &decl.ty);
+        }
+        let first = match &first {
             Local::Var(var) | Local::External(var) => cx.defs.vars[*var].span,
             Local::Action(pou) => cx.defs.pous[*pou].span,
             Local::Missing => name.span,
@@ -370,6 +373,18 @@ fn declare_var<'a>(
         crate::edges::declare(cx, var, edge, span);
     }
     cx.pou_slots[id].scope.insert(key, Local::Var(var));
+}
+
+/// A second declaration with another type: which one is meant is not known, so no use of the variable is judged by its type.
+fn doubt_type(cx: &mut Cx, var: VarId, second: &ast::TypeExpr) {
+    let name = |ty: &ast::TypeExpr| match &ty.kind {
+        ast::TypeExprKind::Named(name) => Some(fold(&name.text)),
+        _ => None,
+    };
+    let first = cx.var_slots[var].decl.and_then(|(ty, _)| name(ty));
+    if first.is_none() || first != name(second) {
+        cx.var_slots[var].ty = State::Done(Init::Default);
+    }
 }
 
 fn declare_external<'a>(cx: &mut Cx<'a>, id: PouId, decl: &'a ast::VarDecl) {

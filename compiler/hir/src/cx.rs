@@ -110,6 +110,8 @@ pub(crate) struct Cx<'a> {
     pub steps: FxHashMap<*const ast::Step, VarId>,
     /// The type of these variables, once there is one.
     pub step_type: Option<TypeId>,
+    /// Files with mistakes of syntax: what is not there may only not have been read.
+    pub half_read: FxHashSet<FileId>,
     /// Names that were reported as unknown, by POU: one message each.
     reported: FxHashSet<(Option<PouId>, SmolStr)>,
 }
@@ -135,6 +137,7 @@ impl<'a> Cx<'a> {
             edges: FxHashMap::default(),
             steps: FxHashMap::default(),
             step_type: None,
+            half_read: FxHashSet::default(),
             reported: FxHashSet::default(),
         }
     }

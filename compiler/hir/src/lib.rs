@@ -71,6 +71,8 @@ pub struct Checked {
 /// Checks all files: names, types, bodies, configuration. Messages go to `diags`; checking goes on behind each mistake.
 pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> Checked {
     let mut cx = cx::Cx::new(units);
+    let mistakes = diags.iter().filter(|d| d.severity() == plcc_diag::Severity::Error);
+    cx.half_read = mistakes.map(|d| d.primary.span.file).collect();
     collect::collect(&mut cx, units);
     cx.resolve_all();
     edges::check_types(&mut cx);
@@ -79,7 +81,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     body_check::check_all(&mut cx);
     cycles::recursion(&mut cx);
     references::spread_addresses(&mut cx.defs);
-    lints::run(&mut cx, units, diags);
+    lints::run(&mut cx, units);
     let app = config::configure(&mut cx, units, selection);
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }

@@ -10,13 +10,14 @@ use crate::defs::*;
 use crate::foreign_code;
 use crate::types::Type;
 use crate::visit::{self, Use, Visitor};
-use plcc_diag::{Code, Diagnostic, Diagnostics, FileId, Severity, Span, codes};
+use plcc_diag::{Code, Diagnostic, FileId, Severity, Span, codes};
 use rustc_hash::FxHashSet;
 
-/// Warns about the POUs of the user's files; `before` are the messages of the parser.
-pub(crate) fn run(cx: &mut Cx, units: &[Unit], before: &Diagnostics) {
-    let errors = before.iter().chain(cx.diags.iter()).filter(|d| d.severity() == Severity::Error);
-    let broken: FxHashSet<FileId> = errors.map(|d| d.primary.span.file).collect();
+/// Warns about the POUs of the user's files.
+pub(crate) fn run(cx: &mut Cx, units: &[Unit]) {
+    let errors = cx.diags.iter().filter(|d| d.severity() == Severity::Error);
+    let mut broken: FxHashSet<FileId> = errors.map(|d| d.primary.span.file).collect();
+    broken.extend(&cx.half_read);
     let uses = Uses::of(&cx.defs);
     // One mistake, one message: what foreign code should have written is told there.
     let (mut found, explained) = foreign_code::find(cx, units, &uses.written);

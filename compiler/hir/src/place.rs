@@ -197,7 +197,10 @@ impl<'a> Checker<'_, 'a> {
                         format!("`{}` has no component `{}`", def.name, name.text),
                     )
                     .also(def.span, "declared here")
-                    .help_if(hint.map(|h| format!("did you mean `{h}`?")));
+                    .help(match hint {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("its components are {}", list(def.fields.iter().map(|f| f.name.as_str()))),
+                    });
                     self.report(d);
                     return None;
                 };
@@ -212,14 +215,18 @@ impl<'a> Checker<'_, 'a> {
                 let Some(Local::Var(var)) = found else {
                     let names = self.cx.defs.pous[pou].vars.iter().map(|v| &self.cx.defs.vars[*v]);
                     let names = names.filter(|v| matches!(v.section, Section::Input | Section::Output));
-                    let hint = similar(&name.text, names.map(|v| v.name.as_str()));
+                    let names = names.map(|v| v.name.as_str());
+                    let help = match similar(&name.text, names.clone()) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("its inputs and outputs are {}", list(names)),
+                    };
                     let def = &self.cx.defs.pous[pou];
                     let mut d = Diagnostic::new(
                         codes::UNKNOWN_MEMBER,
                         name.span,
                         format!("`{}` has no input or output `{}`", def.name, name.text),
                     )
-                    .help_if(hint.map(|h| format!("did you mean `{h}`?")));
+                    .help(help);
                     if !def.builtin {
                         d = d.also(def.span, "declared here");
                     }
@@ -598,4 +605,11 @@ impl<'a> Checker<'_, 'a> {
 fn is_place(e: &ast::Expr) -> bool {
     use ast::ExprKind::*;
     matches!(e.kind, Name(_) | Member(..) | Index(..) | Part(..) | Deref(_) | Address(_) | Error)
+}
+
+/// Names as a message lists them: the first dozen.
+fn list<'n>(names: impl Iterator<Item = &'n str> + Clone) -> String {
+    let more = if names.clone().nth(12).is_some() { ", ..." } else { "" };
+    let first: Vec<&str> = names.take(12).collect();
+    if first.is_empty() { "none".into() } else { format!("{}{more}", first.join(", ")) }
 }

@@ -113,7 +113,7 @@ impl<'a> Cx<'a> {
         let standard = plcc_stdlib::elem::ALL.iter().map(|e| e.name()).chain(["STRING", "WSTRING"]);
         let pous = self.pous.iter().filter(|(_, p)| self.defs.pous[**p].kind == PouKind::FunctionBlock);
         let names = self.types.keys().chain(pous.map(|(n, _)| n)).map(|n| n.as_str()).chain(standard);
-        let hint = similar(&name.text, names);
+        let hint = iec_name(&key).map(str::to_string).or_else(|| similar(&name.text, names));
         self.push(
             Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text))
                 .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
@@ -236,7 +236,8 @@ impl<'a> Cx<'a> {
                             field.span,
                             format!("component `{}` is declared twice", field.text),
                         )
-                        .also(first, "first declared here"),
+                        .also(first, "first declared here")
+                        .help("remove or rename one of them; names do not differ by case"),
                     );
                     continue;
                 }
@@ -309,7 +310,8 @@ impl<'a> Cx<'a> {
                         value.name.span,
                         format!("value `{}` is declared twice", value.name.text),
                     )
-                    .also(first, "first declared here"),
+                    .also(first, "first declared here")
+                    .help("remove or rename one of them; names do not differ by case"),
                 );
                 continue;
             }
@@ -431,4 +433,24 @@ impl<'a> Cx<'a> {
             _ => None,
         }
     }
+}
+
+/// What a type of another language, in upper case, is called in IEC 61131-3.
+fn iec_name(foreign: &str) -> Option<&'static str> {
+    Some(match foreign {
+        "BOOLEAN" => "BOOL",
+        "INT8" | "INT8_T" => "SINT",
+        "INTEGER" | "SHORT" | "INT16" | "INT16_T" => "INT",
+        "LONG" | "INT32" | "INT32_T" => "DINT",
+        "INT64" | "INT64_T" => "LINT",
+        "UINT8" | "UINT8_T" => "USINT",
+        "UINT16" | "UINT16_T" => "UINT",
+        "UINT32" | "UINT32_T" => "UDINT",
+        "UINT64" | "UINT64_T" => "ULINT",
+        "FLOAT" | "SINGLE" | "FLOAT32" => "REAL",
+        "DOUBLE" | "FLOAT64" => "LREAL",
+        "DATETIME" => "DT",
+        "TEXT" => "STRING",
+        _ => return None,
+    })
 }

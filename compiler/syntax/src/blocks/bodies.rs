@@ -1,6 +1,6 @@
 //! Bodies in ST and SFC: their constructs, and where they end.
 
-use super::{Blocks, Construct, Phase};
+use super::{Blocks, Construct, Phase, is_close};
 use crate::token::{Tok, Token};
 use plcc_diag::codes;
 
@@ -197,11 +197,45 @@ impl Blocks<'_, '_> {
             if chart {
                 return self.close_above(self.stack.len() - 1, t);
             }
-            if self.at_statement() && (self.unsupported() || self.misspelled_end(t)) {
+            if self.at_statement() && (self.unsupported() || self.misspelled_end(t) || self.misspelled_opener(t)) {
                 return;
             }
         }
         self.take(Tok::Id);
+    }
+
+    /// A word one letter away from one that opens a statement (or is ELSIF), before something that cannot follow a name.
+    fn misspelled_opener(&mut self, t: Token) -> bool {
+        use Tok::*;
+        let next = self.peek(1);
+        let text = t.text(self.text);
+        if !matches!(next.kind, Id | Int | Lit | Qualified | Not | LParen) || text.len() > 7 {
+            return false;
+        }
+        let upper = text.to_ascii_uppercase();
+        let words = [(If, Then), (For, To), (While, Do), (Case, Of), (Repeat, Until), (Elsif, Then)];
+        let Some((word, partner)) = words.into_iter().find(|(word, _)| is_close(&upper, word.describe())) else {
+            return false;
+        };
+        // `name(...)` is a call and `name` on a line of its own a statement without `;`, unless the partner word follows.
+        let until = |t: &&Token| word == Repeat || t.kind != Semi;
+        let mut rest = self.tokens[self.at + 1..].iter().take_while(until);
+        let stop = |k: Tok| k == partner || Construct::statement(k).is_some() || Construct::closed_by(k).is_some();
+        if rest.find(|t| stop(t.kind)).is_none_or(|t| t.kind != partner) {
+            return false;
+        }
+        let meant = word.describe();
+        let message = format!("`{text}` cannot begin a statement here");
+        self.report
+            .push(self.report.at(codes::MISSPELLED, t.start, t.end, message).help(format!("did you mean `{meant}`?")));
+        match Construct::statement(word) {
+            Some(block) => self.open(block, word),
+            None => {
+                self.branch(t, |f| f.block == Construct::If);
+                self.take(word);
+            }
+        }
+        true
     }
 
     /// ELSE, ELSIF or UNTIL: constructs inside the one that it belongs to are not closed.

@@ -184,7 +184,8 @@ impl Blocks<'_, '_> {
             }
             _ => {}
         }
-        if self.last() != Tok::Assign && self.names_something() && start {
+        let in_list = self.top() == Some(Construct::Var) && self.last() == Tok::Comma && self.parens == 0;
+        if self.names_something() && (start || in_list) {
             self.reserved_name(t);
             return self.take(Tok::Id);
         }

@@ -250,7 +250,7 @@ impl Recovery<'_, '_> {
         };
         let message = self.missing(codes::MISSING_OPERAND, at, message);
         self.insert(at, Bad);
-        Some(message)
+        Some(message.help("write a literal, a variable or a call there"))
     }
 
     /// `)`, `]`, and the `,` between two arguments.
@@ -283,7 +283,10 @@ impl Recovery<'_, '_> {
                 return None;
             }
         }
-        if matches!(kind, Tok::RBracket | Tok::RParen) {
+        if self.unclear_end(refused.at, segment) {
+            // Nothing is known about the operands then: a guess would be judged by its types and give a second message.
+            self.give_up_before(at, segment);
+        } else if matches!(kind, Tok::RBracket | Tok::RParen) {
             // A closing sign of the other kind: taken for the right one if that one does not follow.
             self.tokens[at].kind = close;
         } else {
@@ -293,6 +296,18 @@ impl Recovery<'_, '_> {
             }
         }
         Some(message.help(format!("write `{sign}`")))
+    }
+
+    /// Whether a subscript or the arguments of a function are open at the end of their statement, or before its `:=`: the
+    /// closing sign may have been meant at any operator before.
+    fn unclear_end(&self, at: usize, segment: &Range<usize>) -> bool {
+        let Some(open) = self.opener(at) else { return false };
+        let call = self.kind(open.wrapping_sub(1)) == Tok::Id && open > segment.start + 1;
+        let ends = self.kind(at) == Tok::Semi || self.begins_line(at);
+        let goes_on = self.kind(at) == Tok::Assign && !self.tokens[at..segment.end].iter().any(|t| t.first);
+        (call || self.kind(open) == Tok::LBracket)
+            && (ends || goes_on)
+            && self.surroundings(at) == Surroundings::Statements
     }
 
     /// Whether more parentheses close than open in `range`.

@@ -173,6 +173,12 @@ impl Recovery<'_, '_> {
         true
     }
 
+    /// Puts `Bad` in place of the statement whose end is at `at`, or with which `:=` there goes on.
+    pub(super) fn give_up_before(&mut self, at: usize, segment: &Range<usize>) {
+        let end = if self.kind(at) == Tok::Assign { segment.end } else { at };
+        self.replace(segment.start..end, self.kind(end) != Tok::Semi);
+    }
+
     /// One `Bad` (and a `;`) for many tokens.
     fn replace(&mut self, range: Range<usize>, semicolon: bool) {
         let (start, end) = match (self.tokens.get(range.start), self.tokens.get(range.end.wrapping_sub(1))) {

@@ -1,0 +1,404 @@
+//! Typical mistakes: each is one edit of a correct program, and gives exactly one message, at its line, with useful help.
+
+use plcc_hir::Profile;
+use plcc_tests::compile::diagnose;
+
+/// A program without any message. It has a bit of everything, so that a mistake in one place can be felt in others.
+const CORRECT: &str = "\
+TYPE
+  Mode : (Idle, Run, Fault);
+  Motor : STRUCT
+    speed : REAL;
+    hours : DINT;
+  END_STRUCT;
+  Percent : INT (0..100);
+END_TYPE
+
+FUNCTION Scale : REAL
+VAR_INPUT
+  raw : INT;
+  gain : REAL := 1.0;
+END_VAR
+Scale := INT_TO_REAL(raw) * gain;
+END_FUNCTION
+
+FUNCTION_BLOCK Counter
+VAR_INPUT
+  pulse : BOOL;
+  preset : INT;
+END_VAR
+VAR_OUTPUT
+  done : BOOL;
+  value : INT;
+END_VAR
+VAR_IN_OUT
+  total : DINT;
+END_VAR
+VAR
+  edge : R_TRIG;
+END_VAR
+edge(CLK := pulse);
+IF edge.Q THEN
+  value := value + 1;
+  total := total + 1;
+END_IF;
+done := value >= preset;
+END_FUNCTION_BLOCK
+
+PROGRAM Main
+VAR_INPUT
+  start : BOOL;
+  level : INT;
+END_VAR
+VAR CONSTANT
+  COUNT : INT := 4;
+  HIGH : INT := 90;
+END_VAR
+VAR
+  mode : Mode;
+  motors : ARRAY [1..COUNT] OF Motor;
+  table : ARRAY [1..3, 0..1] OF INT;
+  counter : Counter;
+  delay : TON;
+  total : DINT;
+  sum : REAL;
+  i : INT;
+  share : Percent;
+  lamp : BOOL;
+END_VAR
+
+delay(IN := start, PT := T#2s);
+counter(pulse := start, preset := 10, total := total);
+
+CASE mode OF
+  Idle:
+    IF delay.Q THEN
+      mode := Run;
+    END_IF;
+  Run:
+    IF NOT start THEN
+      mode := Idle;
+    ELSIF level > HIGH THEN
+      mode := Fault;
+    END_IF;
+  Fault:
+    lamp := counter.done;
+END_CASE;
+
+CASE level OF
+  0: table[1, 0] := 1;
+  1..9, 20: table[2, 0] := level;
+ELSE
+  table[3, 1] := -1;
+END_CASE;
+
+sum := 0.0;
+FOR i := 1 TO COUNT DO
+  motors[i].speed := Scale(raw := level, gain := 0.5);
+  motors[i].hours := total;
+  sum := sum + motors[i].speed;
+END_FOR;
+
+WHILE total > 1000 DO
+  total := total - 1000;
+END_WHILE;
+
+REPEAT
+  share := share + 1;
+UNTIL share >= 50
+END_REPEAT;
+
+IF level > HIGH AND start THEN
+  lamp := TRUE;
+ELSE
+  lamp := sum > 10.0;
+END_IF;
+END_PROGRAM
+";
+
+/// One mistake.
+struct Mistake {
+    /// In a few words.
+    what: &'static str,
+    /// Text that stands once in the correct program ...
+    from: &'static str,
+    /// ... and what is written instead.
+    to: &'static str,
+    /// The only message's code.
+    code: &'static str,
+    /// Text that stands once in the wrong program: the message points into its first line.
+    at: &'static str,
+    /// A part of the help.
+    help: &'static str,
+}
+
+#[rustfmt::skip]
+const MISTAKES: &[Mistake] = &[
+    // Signs and words that are missing or wrong.
+    Mistake { what: "missing `;` behind an assignment", from: "sum := 0.0;", to: "sum := 0.0",
+        code: "E0114", at: "sum := 0.0", help: "`;`" },
+    Mistake { what: "missing `;` behind a declaration", from: "delay : TON;", to: "delay : TON",
+        code: "E0114", at: "delay : TON", help: "`;`" },
+    Mistake { what: "missing `;` behind a call", from: "PT := T#2s);", to: "PT := T#2s)",
+        code: "E0114", at: "PT := T#2s)", help: "`;`" },
+    Mistake { what: "missing END_IF", from: "  lamp := sum > 10.0;\nEND_IF;", to: "  lamp := sum > 10.0;",
+        code: "E0101", at: "IF level > HIGH AND start", help: "END_IF" },
+    Mistake { what: "missing END_IF inside of a CASE", from: "      mode := Run;\n    END_IF;", to: "      mode := Run;",
+        code: "E0101", at: "IF delay.Q THEN", help: "END_IF" },
+    Mistake { what: "missing END_FOR", from: "speed;\nEND_FOR;", to: "speed;",
+        code: "E0101", at: "FOR i := 1", help: "END_FOR" },
+    Mistake { what: "missing END_VAR", from: "  edge : R_TRIG;\nEND_VAR", to: "  edge : R_TRIG;",
+        code: "E0101", at: "VAR\n  edge", help: "END_VAR" },
+    Mistake { what: "missing END_CASE", from: "  table[3, 1] := -1;\nEND_CASE;", to: "  table[3, 1] := -1;",
+        code: "E0101", at: "CASE level OF", help: "END_CASE" },
+    Mistake { what: "missing END_FUNCTION", from: "* gain;\nEND_FUNCTION", to: "* gain;",
+        code: "E0101", at: "FUNCTION Scale", help: "END_FUNCTION" },
+    Mistake { what: "missing THEN", from: "IF delay.Q THEN", to: "IF delay.Q",
+        code: "E0115", at: "IF delay.Q", help: "THEN" },
+    Mistake { what: "missing DO", from: "TO COUNT DO", to: "TO COUNT",
+        code: "E0115", at: "TO COUNT", help: "DO" },
+    Mistake { what: "missing OF", from: "CASE mode OF", to: "CASE mode",
+        code: "E0115", at: "CASE mode", help: "OF" },
+    Mistake { what: "missing UNTIL", from: "UNTIL share >= 50\n", to: "",
+        code: "E0115", at: "END_REPEAT", help: "UNTIL" },
+    Mistake { what: "missing `:` in a declaration", from: "total : DINT;\n  sum", to: "total DINT;\n  sum",
+        code: "E0115", at: "total DINT;", help: ":" },
+    Mistake { what: "missing `)`", from: "INT_TO_REAL(raw)", to: "INT_TO_REAL(raw",
+        code: "E0115", at: "INT_TO_REAL(raw", help: ")" },
+    Mistake { what: "missing `)` of a call", from: "total := total);", to: "total := total;",
+        code: "E0115", at: "total := total;", help: "`)`" },
+    Mistake { what: "missing `)` of a parenthesis", from: "IF level > HIGH AND start", to: "IF (level > HIGH AND start",
+        code: "E0115", at: "IF (level", help: "`)`" },
+    Mistake { what: "missing `]`", from: "motors[i].hours", to: "motors[i.hours",
+        code: "E0115", at: "motors[i.hours", help: "]" },
+    Mistake { what: "missing operand", from: "total - 1000;", to: "total - ;",
+        code: "E0116", at: "total - ;", help: "variable" },
+    Mistake { what: "two END_PROGRAMs", from: "END_PROGRAM\n", to: "END_PROGRAM\nEND_PROGRAM \n",
+        code: "E0102", at: "END_PROGRAM ", help: "remove it" },
+    Mistake { what: "END_IF twice", from: "  lamp := sum > 10.0;\nEND_IF;", to: "  lamp := sum > 10.0;\nEND_IF;\nEND_IF; ",
+        code: "E0102", at: "END_IF; ", help: "remove it" },
+    Mistake { what: "the END word of another construct", from: "total - 1000;\nEND_WHILE", to: "total - 1000;\nEND_IF ",
+        code: "E0103", at: "END_IF ;", help: "END_WHILE" },
+    Mistake { what: "END-IF", from: "  lamp := sum > 10.0;\nEND_IF", to: "  lamp := sum > 10.0;\nEND-IF",
+        code: "E0104", at: "END-IF", help: "END_IF" },
+    Mistake { what: "ELSE IF", from: "ELSIF level", to: "ELSE IF level",
+        code: "E0105", at: "ELSE IF", help: "ELSIF" },
+    Mistake { what: "a misspelt keyword", from: "WHILE total", to: "WHLIE total",
+        code: "E0125", at: "WHLIE total", help: "WHILE" },
+    Mistake { what: "ELSEIF", from: "ELSIF level", to: "ELSEIF level",
+        code: "E0125", at: "ELSEIF", help: "`ELSIF`" },
+    Mistake { what: "a misspelt FOR", from: "FOR i := 1", to: "FRO i := 1",
+        code: "E0125", at: "FRO i", help: "`FOR`" },
+    Mistake { what: "a misspelt REPEAT", from: "REPEAT\n", to: "REPAET\n",
+        code: "E0125", at: "REPAET", help: "`REPEAT`" },
+    Mistake { what: "a misspelt CASE", from: "CASE level OF", to: "CSAE level OF",
+        code: "E0125", at: "CSAE", help: "`CASE`" },
+    Mistake { what: "a misspelt ELSE", from: "ELSE\n  lamp", to: "ESLE\n  lamp",
+        code: "E0125", at: "ESLE", help: "`ELSE`" },
+    Mistake { what: "a misspelt THEN", from: "IF delay.Q THEN", to: "IF delay.Q THNE",
+        code: "E0125", at: "THNE", help: "`THEN`" },
+    Mistake { what: "a misspelt END_FOR", from: "END_FOR", to: "END_FRO",
+        code: "E0125", at: "END_FRO", help: "`END_FOR`" },
+    Mistake { what: "a misspelt VAR_INPUT", from: "VAR_INPUT\n  start", to: "VAR_INPTU\n  start",
+        code: "E0125", at: "VAR_INPTU", help: "`VAR_INPUT`" },
+    Mistake { what: "`=` for `:=`", from: "mode := Fault", to: "mode = Fault",
+        code: "E0113", at: "mode = Fault", help: ":=" },
+    Mistake { what: "`==` for `=`", from: "level > HIGH AND", to: "level == HIGH AND",
+        code: "E0111", at: "==", help: "`=`" },
+    Mistake { what: "`!=` for `<>`", from: "level > HIGH AND", to: "level != HIGH AND",
+        code: "E0111", at: "!=", help: "`<>`" },
+    Mistake { what: "`&&` for AND", from: "HIGH AND start", to: "HIGH && start",
+        code: "E0111", at: "&&", help: "AND" },
+    Mistake { what: "`: =`", from: "sum := 0.0", to: "sum : = 0.0",
+        code: "E0112", at: ": =", help: ":=" },
+    Mistake { what: "a comment that is not closed", from: "sum := 0.0;", to: "sum := 0.0; (* start",
+        code: "E0107", at: "(* start", help: "*)" },
+    Mistake { what: "a reserved word as a name", from: "  lamp : BOOL;", to: "  lamp, until : BOOL;",
+        code: "E0118", at: "until :", help: "another name" },
+    Mistake { what: "variables behind the first statement", from: "sum := 0.0;", to: "sum := 0.0;\nVAR extra : INT; END_VAR",
+        code: "E0120", at: "VAR extra", help: "before the body" },
+    Mistake { what: "a statement outside of any POU", from: "FUNCTION Scale", to: "start := TRUE;\nFUNCTION Scale",
+        code: "E0119", at: "start := TRUE", help: "PROGRAM" },
+
+    // Names.
+    Mistake { what: "a misspelt variable", from: "lamp := counter.done", to: "lmap := counter.done",
+        code: "E0201", at: "lmap", help: "`lamp`" },
+    Mistake { what: "an undeclared variable", from: "lamp := counter.done", to: "horn := counter.done",
+        code: "E0201", at: "horn", help: "VAR" },
+    Mistake { what: "a misspelt enumeration value", from: "mode := Run;", to: "mode := Runn;",
+        code: "E0201", at: "Runn", help: "`Run`" },
+    Mistake { what: "a misspelt function", from: "INT_TO_REAL", to: "INT_TO_RAEL",
+        code: "E0322", at: "INT_TO_RAEL", help: "`INT_TO_REAL`" },
+    Mistake { what: "a misspelt type", from: "lamp : BOOL", to: "lamp : BOOLEAN",
+        code: "E0203", at: "BOOLEAN", help: "`BOOL`" },
+    Mistake { what: "a misspelt component", from: "motors[i].hours", to: "motors[i].huors",
+        code: "E0204", at: "huors", help: "`hours`" },
+    Mistake { what: "a misspelt output", from: "IF delay.Q", to: "IF delay.Done",
+        code: "E0204", at: "delay.Done", help: "IN, PT, Q, ET" },
+    Mistake { what: "a misspelt parameter", from: "Scale(raw :=", to: "Scale(rwa :=",
+        code: "E0323", at: "rwa", help: "`raw`" },
+    Mistake { what: "a duplicate variable", from: "  lamp : BOOL;", to: "  lamp : BOOL;\n  Sum : INT;",
+        code: "E0202", at: "  Sum : INT", help: "rename" },
+    Mistake { what: "a duplicate variable of another type", from: "  mode : Mode;\n", to: "  mode : Mode;\n  Table : REAL;\n",
+        code: "E0202", at: "  table : ARRAY", help: "rename" },
+    Mistake { what: "a duplicate constant", from: "  HIGH : INT := 90;\n", to: "  HIGH : INT := 90;\n  count : REAL;\n",
+        code: "E0202", at: "  count : REAL", help: "rename" },
+    Mistake { what: "a duplicate component", from: "    hours : DINT;\n", to: "    hours : DINT;\n    Hours : REAL;\n",
+        code: "E0202", at: "    Hours : REAL", help: "rename" },
+    Mistake { what: "a duplicate enumeration value", from: "(Idle, Run, Fault)", to: "(Idle, Run, Fault, idle)",
+        code: "E0202", at: "(Idle, Run", help: "rename" },
+    Mistake { what: "a duplicate POU", from: "PROGRAM Main", to: "FUNCTION scale : INT\nscale := 1;\nEND_FUNCTION\nPROGRAM Main",
+        code: "E0202", at: "FUNCTION scale", help: "rename" },
+    Mistake { what: "an inner variable from outside", from: "lamp := counter.done", to: "lamp := counter.edge.Q",
+        code: "E0207", at: "counter.edge", help: "output" },
+
+    // Types and literals.
+    Mistake { what: "a real for an integer", from: "table[3, 1] := -1;", to: "table[3, 1] := sum;",
+        code: "E0301", at: ":= sum;", help: "REAL_TO_INT" },
+    Mistake { what: "an integer as a condition", from: "IF delay.Q", to: "IF level",
+        code: "E0301", at: "IF level THEN", help: "<> 0" },
+    Mistake { what: "a number for TIME", from: "PT := T#2s", to: "PT := 2000",
+        code: "E0301", at: "PT := 2000", help: "T#" },
+    Mistake { what: "a narrower target", from: "mode := Fault", to: "table[1, 1] := total",
+        code: "E0301", at: "table[1, 1]", help: "DINT_TO_INT" },
+    Mistake { what: "a number for an enumeration", from: "mode := Fault", to: "mode := 2",
+        code: "E0301", at: "mode := 2", help: "Idle, Run, Fault" },
+    Mistake { what: "AND of a number and a BOOL", from: "level > HIGH AND start", to: "level AND start",
+        code: "E0310", at: "level AND start", help: "INT_TO_WORD" },
+    Mistake { what: "a constant that does not fit", from: "HIGH : INT := 90", to: "HIGH : INT := 90000",
+        code: "E0302", at: "90000", help: "32767" },
+    Mistake { what: "a constant outside of a subrange", from: "share : Percent;", to: "share : Percent := 150;",
+        code: "E0302", at: "150", help: "0 to 100" },
+    Mistake { what: "a duration with an unknown unit", from: "T#2s", to: "T#2min",
+        code: "E0110", at: "T#2min", help: "`m`" },
+    Mistake { what: "a digit that the base does not have", from: "preset := 10", to: "preset := 2#102",
+        code: "E0336", at: "2#102", help: "0 and 1" },
+    Mistake { what: "division by zero", from: "total - 1000;", to: "total / 0;",
+        code: "E0311", at: "total / 0", help: "divisor" },
+
+    // Arrays.
+    Mistake { what: "array bounds the wrong way round", from: "[1..COUNT]", to: "[COUNT..1]",
+        code: "E0303", at: "[COUNT..1]", help: "lower bound comes first" },
+    Mistake { what: "a variable as a bound", from: "[1..COUNT]", to: "[1..level]",
+        code: "E0309", at: "[1..level]", help: "CONSTANT" },
+    Mistake { what: "too few subscripts", from: "table[1, 0] := 1", to: "table[1] := 1",
+        code: "E0315", at: "table[1] ", help: "one subscript per dimension" },
+    Mistake { what: "too many subscripts", from: "motors[i].hours", to: "motors[i, 1].hours",
+        code: "E0315", at: "motors[i, 1]", help: "one subscript per dimension" },
+    Mistake { what: "a constant index out of bounds", from: "table[1, 0] := 1", to: "table[4, 0] := 1",
+        code: "E0316", at: "table[4, 0]", help: "inside the bounds" },
+    Mistake { what: "subscripts on a scalar", from: "lamp := TRUE", to: "lamp[1] := TRUE",
+        code: "E0314", at: "lamp[1]", help: "only arrays" },
+
+    // Calls.
+    Mistake { what: "a parameter of the wrong type", from: "Scale(raw := level", to: "Scale(raw := sum",
+        code: "E0301", at: "raw := sum", help: "REAL_TO_INT" },
+    Mistake { what: "a missing VAR_IN_OUT", from: ", total := total)", to: ")",
+        code: "E0329", at: "counter(pulse", help: "`total := variable`" },
+    Mistake { what: "a VAR_IN_OUT of another type", from: "total := total)", to: "total := level)",
+        code: "E0328", at: "total := level)", help: "same type" },
+    Mistake { what: "an expression for a VAR_IN_OUT", from: "total := total)", to: "total := total + 1)",
+        code: "E0206", at: "total := total + 1)", help: "variable" },
+    Mistake { what: "a doubled parameter", from: "gain := 0.5)", to: "raw := 1)",
+        code: "E0326", at: "raw := 1)", help: "remove" },
+    Mistake { what: "positional and named", from: "Scale(raw := level", to: "Scale(level",
+        code: "E0324", at: "Scale(level", help: "`name := value`" },
+    Mistake { what: "too many arguments", from: "Scale(raw := level, gain := 0.5)", to: "Scale(level, 0.5, 2)",
+        code: "E0325", at: "Scale(level, 0.5, 2)", help: "raw, gain" },
+    Mistake { what: "a missing argument", from: "INT_TO_REAL(raw)", to: "INT_TO_REAL()",
+        code: "E0337", at: "INT_TO_REAL()", help: "IN" },
+    Mistake { what: "an output fetched with `:=`", from: "preset := 10,", to: "preset := 10, done := lamp,",
+        code: "E0327", at: "done := lamp", help: "=>" },
+    Mistake { what: "a function block as a function", from: "lamp := sum > 10.0", to: "lamp := TON(IN := start, PT := T#1s)",
+        code: "E0321", at: "TON(", help: "instance" },
+    Mistake { what: "a program called as a function", from: "lamp := TRUE", to: "Main()",
+        code: "E0321", at: "Main()", help: "tasks" },
+    Mistake { what: "recursion", from: "INT_TO_REAL(raw)", to: "Scale(raw, 1.0)",
+        code: "E0335", at: "Scale(raw, 1.0)", help: "loop" },
+
+    // Who may write what.
+    Mistake { what: "assigning to a constant", from: "lamp := TRUE", to: "HIGH := 80",
+        code: "E0320", at: "HIGH := 80", help: "CONSTANT" },
+    Mistake { what: "assigning to an output from outside", from: "lamp := TRUE", to: "counter.value := 0",
+        code: "E0320", at: "counter.value := 0", help: "only the function block itself" },
+    Mistake { what: "assigning to a FOR variable", from: "motors[i].hours := total", to: "i := i + 1",
+        code: "E0331", at: "i := i + 1", help: "WHILE" },
+    Mistake { what: "assigning to a function", from: "lamp := TRUE", to: "Scale := 1.0 ",
+        code: "E0206", at: "Scale := 1.0 ", help: "call it" },
+    Mistake { what: "assigning to an enumeration value", from: "mode := Fault", to: "Fault := mode",
+        code: "E0206", at: "Fault := mode", help: "variable" },
+
+    // Statements.
+    Mistake { what: "overlapping CASE labels", from: "1..9, 20:", to: "1..9, 5:",
+        code: "E0333", at: "1..9, 5:", help: "once" },
+    Mistake { what: "a CASE label twice", from: "  Fault:\n", to: "  Run: ;\n  Fault:\n",
+        code: "E0333", at: "  Run: ;", help: "once" },
+    Mistake { what: "a variable as a CASE label", from: "1..9, 20:", to: "1..9, i:",
+        code: "E0309", at: "1..9, i:", help: "CONSTANT" },
+    Mistake { what: "a forgotten CASE value", from: "  Fault:\n    lamp := counter.done;\n", to: "",
+        code: "W0349", at: "CASE mode OF", help: "ELSE" },
+    Mistake { what: "EXIT outside of a loop", from: "lamp := TRUE", to: "EXIT",
+        code: "E0330", at: "EXIT", help: "inside FOR" },
+    Mistake { what: "a FOR that counts with step 0", from: "TO COUNT DO", to: "TO COUNT BY 0 DO",
+        code: "E0334", at: "BY 0", help: "BY 1" },
+    Mistake { what: "an expression as a statement", from: "lamp := TRUE;", to: "lamp;",
+        code: "E0332", at: "lamp;", help: ":=" },
+    Mistake { what: "a BOOL as FOR variable", from: "FOR i := 1 TO COUNT", to: "FOR lamp := 1 TO COUNT",
+        code: "E0310", at: "FOR lamp", help: "INT" },
+];
+
+/// Where `part` stands in `text`, once.
+fn place(m: &Mistake, text: &str, part: &str) -> Result<usize, String> {
+    match &text.match_indices(part).map(|(at, _)| at).collect::<Vec<_>>()[..] {
+        [at] => Ok(*at),
+        all => Err(format!("{}: `{part}` stands {} times\n", m.what, all.len())),
+    }
+}
+
+/// The line, from 1, of an offset.
+fn line(text: &str, at: usize) -> usize {
+    text[..at].matches('\n').count() + 1
+}
+
+/// What is wrong with the messages of a mistake.
+fn judge(m: &Mistake) -> Result<(), String> {
+    place(m, CORRECT, m.from)?;
+    let text = CORRECT.replacen(m.from, m.to, 1);
+    let expected_line = line(&text, place(m, &text, m.at)?);
+    let (_, diags, sources) = diagnose(&text, Profile::Strict);
+    let list = diags.sorted();
+    let shown: String = list
+        .iter()
+        .map(|d| {
+            format!("    {}: {}: {} / {}\n", sources.position(d.primary.span), d.code, d.message, d.help.join(" / "))
+        })
+        .collect();
+    let [only] = list[..] else { return Err(format!("{}: {} messages\n{shown}", m.what, list.len())) };
+    let found_line = line(&text, only.primary.span.start as usize);
+    let mut wrong = Vec::new();
+    if only.code.info().code != m.code {
+        wrong.push(format!("{} instead of {}", only.code, m.code));
+    }
+    if found_line != expected_line {
+        wrong.push(format!("line {found_line} instead of {expected_line}"));
+    }
+    if m.help.is_empty() || !only.help.iter().any(|h| h.contains(m.help)) {
+        wrong.push(format!("the help does not say `{}`", m.help));
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(format!("{}: {}\n{shown}", m.what, wrong.join(", "))) }
+}
+
+#[test]
+fn the_correct_program_has_no_message() {
+    let (_, diags, sources) = diagnose(CORRECT, Profile::Strict);
+    let list: Vec<String> =
+        diags.sorted().iter().map(|d| format!("{}: {}", sources.position(d.primary.span), d.message)).collect();
+    assert!(list.is_empty(), "{list:#?}");
+}
+
+#[test]
+fn each_mistake_gives_one_message_at_its_line_with_help() {
+    assert!(MISTAKES.len() >= 40);
+    let wrong: Vec<String> = MISTAKES.iter().filter_map(|m| judge(m).err()).collect();
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), MISTAKES.len(), wrong.join(""));
+}
