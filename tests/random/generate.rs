@@ -229,7 +229,12 @@ impl Generator {
             let ty = if write && self.chance(6) { Ty::Small } else { self.pick_type() };
             let name = format!("{names}{n}");
             let init = if self.chance(40) { format!(" := {}", self.literal(ty)) } else { String::new() };
-            self.line(&format!("  {name} : {}{init};", ty.name()));
+            let edge = match (section, ty, self.rng.u32(0..4)) {
+                ("VAR_INPUT RETAIN", Ty::Bool, 0) => " R_EDGE",
+                ("VAR_INPUT RETAIN", Ty::Bool, 1) => " F_EDGE",
+                _ => "",
+            };
+            self.line(&format!("  {name} : {}{edge}{init};", ty.name()));
             self.vars.push(Var { text: name.clone(), ty, write });
             made.push((name, ty));
         }
@@ -349,7 +354,8 @@ impl Generator {
         self.line(&format!("FUNCTION_BLOCK {name}"));
         self.indent = 1;
         let inputs = self.rng.usize(1..4);
-        let inputs = self.declare("VAR_INPUT", "p", inputs, false);
+        // Only function blocks have edges, and functions nothing to retain: the word tells them apart.
+        let inputs = self.declare("VAR_INPUT RETAIN", "p", inputs, false);
         let outputs = self.rng.usize(1..4);
         let outputs = self.declare("VAR_OUTPUT", "q", outputs, true);
         let outputs: Vec<(String, Ty)> = outputs.into_iter().collect();
@@ -441,8 +447,13 @@ impl Generator {
 
     fn assign(&mut self) {
         if self.vars.iter().any(|v| v.text == "s.a") && self.chance(8) {
-            let text = if self.rng.bool() { "s := t;" } else { "t := s;" };
-            self.line(text);
+            let text = match self.rng.u32(0..4) {
+                0 => "s := t;".into(),
+                1 => "t := s;".into(),
+                2 => format!("s := SEL({}, s, t);", self.expr(Ty::Bool, 2)),
+                _ => format!("t := MUX({}, s, t, s);", self.expr(Ty::Int { bits: 16, signed: true }, 2)),
+            };
+            self.line(&text);
             return;
         }
         let Some(var) = self.writable() else { return };
@@ -678,13 +689,23 @@ impl Generator {
         {
             return text;
         }
+        if self.chance(4)
+            && let Some(text) = self.enabled(ty, depth)
+        {
+            return text;
+        }
         let d = depth - 1;
         match ty {
             Ty::Bool => self.bool_expr(d),
             Ty::Int { .. } => self.int_expr(ty, d),
             Ty::Bits(bits) => self.bits_expr(ty, bits, d),
             Ty::Real | Ty::Lreal => self.real_expr(ty, d),
-            Ty::Time => match self.rng.u32(0..6) {
+            Ty::Time => match self.rng.u32(0..8) {
+                6 | 7 => {
+                    let real = if self.rng.bool() { Ty::Real } else { Ty::Lreal };
+                    let op = if self.rng.bool() { "*" } else { "/" };
+                    format!("({} {op} {})", self.expr(ty, d), self.expr(real, d))
+                }
                 0 => format!("({} + {})", self.expr(ty, d), self.expr(ty, d)),
                 1 => format!("({} - {})", self.expr(ty, d), self.expr(ty, d)),
                 2 => format!("({} * {})", self.expr(ty, d), self.expr(Ty::Int { bits: 16, signed: true }, d)),
@@ -707,6 +728,27 @@ impl Generator {
                 }
             }
         }
+    }
+
+    /// A standard function with EN and ENO; what it does may fail, and is caught.
+    fn enabled(&mut self, ty: Ty, depth: u32) -> Option<String> {
+        let d = depth - 1;
+        let eno = self.vars.iter().find(|v| v.write && v.ty == Ty::Bool)?.text.clone();
+        let body = match ty {
+            Ty::Int { .. } => {
+                let name = ["DIV", "MOD", "ADD", "MAX"][self.rng.usize(0..4)];
+                format!("{name}(IN2 := {}, IN1 := {}", self.variable(ty)?, self.expr(ty, d))
+            }
+            Ty::Bits(_) => {
+                let name = ["SHL", "ROR"][self.rng.usize(0..2)];
+                let count = self.variable(Ty::Int { bits: 16, signed: true })?;
+                format!("{name}(N := {count}, IN := {}", self.expr(ty, d))
+            }
+            Ty::Real | Ty::Lreal => format!("SQRT(IN := {}", self.expr(ty, d)),
+            _ => format!("SEL(IN1 := {}, G := {}, IN0 := {}", self.leaf(ty), self.expr(Ty::Bool, d), self.leaf(ty)),
+        };
+        let en = if self.rng.bool() { format!(", EN := {}", self.expr(Ty::Bool, d)) } else { String::new() };
+        Some(format!("{body}{en}, ENO => {eno})"))
     }
 
     fn bool_expr(&mut self, d: u32) -> String {
@@ -750,7 +792,11 @@ impl Generator {
                 format!("FIND({}, {})", self.expr(text, d), self.expr(text, d))
             };
         }
-        match self.rng.u32(0..16) {
+        match self.rng.u32(0..17) {
+            16 => {
+                let bits = Ty::Bits([8, 16, 32][self.rng.usize(0..3)]);
+                format!("{}_BCD_TO_{name}({})", bits.name(), self.expr(bits, d))
+            }
             0..=4 => {
                 let op = ["+", "-", "*"][self.rng.usize(0..3)];
                 format!("({} {op} {})", self.expr(ty, d), self.expr(ty, d))
@@ -867,7 +913,12 @@ impl Generator {
     }
 
     fn bits_expr(&mut self, ty: Ty, bits: u32, d: u32) -> String {
-        match self.rng.u32(0..8) {
+        match self.rng.u32(0..10) {
+            8 => format!("TO_BIG_ENDIAN({})", self.expr(ty, d)),
+            9 => {
+                let from = Ty::Int { bits: [8, 16, 32, 64][self.rng.usize(0..4)], signed: self.rng.bool() };
+                format!("{}_TO_BCD_{}({})", from.name(), ty.name(), self.expr(from, d))
+            }
             0..=2 => {
                 let op = ["AND", "OR", "XOR"][self.rng.usize(0..3)];
                 format!("({} {op} {})", self.expr(ty, d), self.expr(ty, d))
@@ -947,11 +998,12 @@ impl Generator {
     }
 }
 
-const STANDARD: usize = 8;
+const STANDARD: usize = 12;
 
 fn standard_block(n: usize) -> Block {
     let bool = Ty::Bool;
     let int = Ty::Int { bits: 16, signed: true };
+    let real = Ty::Real;
     let names = |list: &[(&str, Ty)]| list.iter().map(|(n, t)| (n.to_string(), *t)).collect();
     type Parameters = Vec<(String, Ty)>;
     let (name, inputs, outputs): (&str, Parameters, Parameters) = match n {
@@ -962,6 +1014,10 @@ fn standard_block(n: usize) -> Block {
         4 => ("CTD", names(&[("CD", bool), ("LD", bool), ("PV", int)]), names(&[("Q", bool), ("CV", int)])),
         5 => ("R_TRIG", names(&[("CLK", bool)]), names(&[("Q", bool)])),
         6 => ("F_TRIG", names(&[("CLK", bool)]), names(&[("Q", bool)])),
+        7 => ("LIMITS_ALARM", names(&[("H", real), ("X", real), ("EPS", real)]), names(&[("Q", bool), ("QL", bool)])),
+        8 => ("AVERAGE", names(&[("RUN", bool), ("XIN", real), ("N", int)]), names(&[("XOUT", real)])),
+        9 => ("LAG1", names(&[("XIN", real), ("TAU", Ty::Time), ("CYCLE", Ty::Time)]), names(&[("XOUT", real)])),
+        10 => ("SEMA", names(&[("CLAIM", bool), ("RELEASE", bool)]), names(&[("BUSY", bool)])),
         _ => ("SR", names(&[("S1", bool), ("R", bool)]), names(&[("Q1", bool)])),
     };
     Block { name: name.into(), inputs, outputs, action: false }

@@ -137,34 +137,22 @@ impl Lexer<'_, '_, '_> {
     }
 
     /// Whether the operator's word that ends at `end` is called as a function (`x := AND(a, b, c)`): a parenthesis
-    /// follows, and it stands where an operand must begin. At the start of a line it may be an operator of IL.
+    /// follows, and it stands where an operand must begin. At the start of a line, behind what may end a line of IL, it may
+    /// be an operator of IL.
     fn is_function_form(&self, end: usize) -> bool {
-        use Tok::{Assign, Comma, Elsif, Eq, If, LBracket, LParen, Minus, Not, Op, Plus, Rel, Star, Until, While};
+        use Tok::*;
         let gap = self.bytes[end..].iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
         let opens = self.bytes.get(end + gap) == Some(&b'(') && self.bytes.get(end + gap + 1) != Some(&b'*');
         let before = self.out.tokens.last().map(|t| t.kind);
         opens
-            && !self.first
-            && before.is_some_and(|before| {
-                matches!(
-                    before,
-                    Assign
-                        | Comma
-                        | Eq
-                        | If
-                        | Elsif
-                        | LBracket
-                        | LParen
-                        | Minus
-                        | Not
-                        | Op
-                        | Plus
-                        | Rel
-                        | Star
-                        | Until
-                        | While
-                )
-            })
+            && match before {
+                Some(LParen | Not | Op) => !self.first,
+                Some(
+                    Assign | By | Case | Comma | DotDot | Elsif | Eq | If | LBracket | Minus | Plus | Rel | Star | To
+                    | Until | While,
+                ) => true,
+                _ => false,
+            }
     }
 
     fn block_comment(&mut self, open: u8, close: u8) {

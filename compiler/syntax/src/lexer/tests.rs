@@ -148,6 +148,10 @@ fn operators_called_as_functions_are_names() {
     assert_eq!(tokens("(mod (a, b)")[1], "Id mod");
     assert_eq!(tokens("a XOR (b)")[1], "Op XOR");
     assert_eq!(tokens(") OR(b)")[1], "Op OR");
+    assert_eq!(tokens("CASE MOD(a, b) OF")[1], "Id MOD");
+    assert_eq!(tokens("TO MOD(a) BY OR(b)")[4..7], ["RParen )", "By BY", "Id OR"]);
+    assert_eq!(tokens("x :=\nAND(a)")[2], "Id AND");
     // Operators of IL at the start of their line.
+    assert_eq!(tokens("NOT\nAND( a")[1], "Op AND");
     assert_eq!(tokens("AND(\nOR( a")[2], "Op OR");
 }
