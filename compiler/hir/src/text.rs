@@ -164,7 +164,9 @@ impl<'a> Checker<'_, 'a> {
                 },
                 // A value to be converted, or the condition of SEL: it has its type already.
                 Some(Type::Fixed(elem)) => {
-                    args.push(self.coerce(operand, at, Types::elem(elem)));
+                    let arg = self.coerce(operand, at, Types::elem(elem));
+                    // `MUX_INT_STRING` fixes the type of K; it counts in LINT all the same.
+                    args.push(if op == TextOp::Mux { self.with_elem(arg, Elem::Lint, at) } else { arg });
                     continue;
                 }
                 Some(Type::Text(wide)) => Some(wide),

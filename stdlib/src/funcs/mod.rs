@@ -54,13 +54,15 @@ pub struct Param {
     pub ty: Type,
 }
 
-/// Any number of parameters of the type variable.
+/// Any number of further parameters of one type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Variadic {
     /// Number in the first name: `IN1` or `IN0`.
     pub first: usize,
     /// At least so many.
     pub min: usize,
+    /// Their type.
+    pub ty: Type,
 }
 
 /// An output of a function: an integer that any integer variable takes whose type holds all its values.
@@ -191,7 +193,7 @@ impl StdFn {
 
     /// The type of argument `n`.
     pub fn param_type(&self, n: usize) -> Option<Type> {
-        self.params.get(n).map(|p| p.ty).or(self.variadic.map(|_| Type::Var))
+        self.params.get(n).map(|p| p.ty).or(self.variadic.map(|v| v.ty))
     }
 
     /// The least number of arguments.
@@ -212,7 +214,7 @@ impl StdFn {
         };
         let mut params: Vec<String> = self.params.iter().map(|p| format!("{} : {}", p.name, text(p.ty))).collect();
         if let Some(v) = self.variadic {
-            let var = text(Type::Var);
+            let var = text(v.ty);
             params.extend((v.first..v.first + v.min).map(|n| format!("IN{n} : {var}")));
             params.push("...".into());
         }
@@ -251,7 +253,7 @@ impl StdFn {
         self
     }
     fn extensible(mut self, first: usize, min: usize) -> Self {
-        self.variadic = Some(Variadic { first, min });
+        self.variadic = Some(Variadic { first, min, ty: Type::Var });
         self
     }
     /// The same row under its typed names, long names of types included (`GT_TIME_OF_DAY`).

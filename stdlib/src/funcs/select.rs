@@ -23,17 +23,21 @@ fn mux(t: Elem, args: &[Val], e: &mut dyn Emit) -> Option<Val> {
     Some(chosen)
 }
 
-/// The typed forms of MUX name the type of K and that of the inputs (Ed. 2 table 27): `MUX_INT_REAL`.
-pub(super) fn typed_mux() -> Vec<StdFn> {
+/// MUX with the type of K in its name, the first part of its typed forms (Ed. 2 table 27): `MUX_INT`, for `MUX_INT_REAL`.
+pub(super) fn mux_by_selector() -> Vec<StdFn> {
     let rows = rows();
     let Some(mux) = rows.iter().find(|r| r.name == "MUX") else { return Vec::new() };
     let integers = crate::elem::ALL.into_iter().filter(|e| e.is_integer());
     let of = |k: Elem| {
         let params = vec![Param { name: "K", ty: Type::Fixed(k) }];
-        let named = StdFn { name: format!("MUX_{}", k.name()), params, ..mux.clone() };
-        crate::elem::ALL.into_iter().flat_map(move |elem| named.typed(elem))
+        StdFn { name: format!("MUX_{}", k.name()), params, ..mux.clone() }
     };
-    integers.flat_map(of).collect()
+    integers.map(of).collect()
+}
+
+/// The typed forms of MUX.
+pub(super) fn typed_mux() -> Vec<StdFn> {
+    mux_by_selector().iter().flat_map(|row| crate::elem::ALL.into_iter().flat_map(|elem| row.typed(elem))).collect()
 }
 
 pub(super) fn rows() -> Vec<StdFn> {

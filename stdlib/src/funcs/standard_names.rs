@@ -28,9 +28,13 @@ fn durations() -> Vec<&'static str> {
     vec!["TIME", "LTIME"]
 }
 
-/// Without strings and characters.
+/// Without strings and characters, which have less to do.
 fn elementary() -> Vec<&'static str> {
     [numbers(), bits(), durations(), DATES.to_vec(), LONG_NAMES.to_vec()].concat()
+}
+
+fn texts() -> [&'static str; 2] {
+    ["STRING", "WSTRING"]
 }
 
 /// A name and its typed forms.
@@ -49,7 +53,6 @@ fn numeric(out: &mut Vec<String>) {
     typed(out, &["MUL", "DIV"], &numbers());
     typed(out, &["MOD"], &integers());
     typed(out, &["EXPT"], &REALS);
-    typed(out, &["MOVE"], &elementary());
 }
 
 fn bit_strings(out: &mut Vec<String>) {
@@ -60,10 +63,25 @@ fn bit_strings(out: &mut Vec<String>) {
 
 fn selection(out: &mut Vec<String>) {
     // Ed. 2 tables 27 and 28, Ed. 3 tables 32 and 33. The typed form of MUX names two types.
-    typed(out, &["SEL", "MAX", "MIN", "LIMIT", "GT", "GE", "EQ", "LE", "LT", "NE"], &elementary());
+    let selected = [&elementary()[..], &texts()].concat();
+    typed(out, &["SEL", "MAX", "MIN", "LIMIT", "GT", "GE", "EQ", "LE", "LT", "NE", "MOVE"], &selected);
     out.push("MUX".into());
     for k in integers() {
-        out.extend(elementary().iter().map(|t| format!("MUX_{k}_{t}")));
+        out.extend(selected.iter().map(|t| format!("MUX_{k}_{t}")));
+    }
+}
+
+fn strings(out: &mut Vec<String>) {
+    // Ed. 2 table 29, Ed. 3 tables 27 and 34.
+    let names = "LEN LEFT RIGHT MID CONCAT INSERT DELETE REPLACE FIND STRING_TO_WSTRING WSTRING_TO_STRING \
+                 STRING_TO_CHAR CHAR_TO_STRING WSTRING_TO_WCHAR WCHAR_TO_WSTRING CHAR_TO_WCHAR WCHAR_TO_CHAR";
+    out.extend(names.split(' ').map(str::to_string));
+    for text in texts() {
+        out.push(format!("TO_{text}"));
+        for elem in elementary() {
+            out.push(format!("{elem}_TO_{text}"));
+            out.push(format!("{text}_TO_{elem}"));
+        }
     }
 }
 
@@ -118,6 +136,7 @@ fn none_is_missing() {
     numeric(&mut names);
     bit_strings(&mut names);
     selection(&mut names);
+    strings(&mut names);
     times(&mut names);
     conversions(&mut names);
     others(&mut names);

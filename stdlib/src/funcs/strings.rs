@@ -112,8 +112,35 @@ pub(super) fn rows() -> Vec<StdFn> {
     ];
     for wide in [false, true] {
         rows.extend(conversions(wide));
+        rows.extend(typed_selection(wide));
     }
     rows
+}
+
+/// The typed forms of selection and comparison: `MAX_STRING`, `EQ_WSTRING`, `MUX_INT_STRING`.
+fn typed_selection(wide: bool) -> Vec<StdFn> {
+    let text = if wide { "WSTRING" } else { "STRING" };
+    let fixed = |ty| if ty == Type::Var { Type::Text(wide) } else { ty };
+    let typed = |row: &StdFn| {
+        let op = match row.meaning {
+            Meaning::Compare(op, _) => TextOp::of_comparison(op)?,
+            // The greatest of one text is that text.
+            Meaning::Move => TextOp::Max,
+            _ => TextOp::of_selection(row.name.split('_').next()?)?,
+        };
+        Some(StdFn {
+            name: format!("{}_{text}", row.name),
+            params: row.params.iter().map(|p| Param { ty: fixed(p.ty), ..*p }).collect(),
+            variadic: row.variadic.map(|v| Variadic { ty: fixed(v.ty), ..v }),
+            generic: Generic::String,
+            result: fixed(row.result),
+            meaning: Meaning::Text(op),
+            ..row.clone()
+        })
+    };
+    let of_any = |row: &StdFn| matches!(row.generic, Generic::Any | Generic::Elementary);
+    let rows = numeric::rows().into_iter().chain(select::rows()).filter(of_any).chain(select::mux_by_selector());
+    rows.filter_map(|row| typed(&row)).collect()
 }
 
 /// From and to STRING or WSTRING.
