@@ -110,7 +110,7 @@ impl<'a> Checker<'_, 'a> {
             Meaning::Integral(_) => self.integral(func, operands.remove(0), span, want),
             Meaning::Formula(_) | Meaning::Choose(_) | Meaning::Compare(..) => self.formula(func, operands, span, want),
             Meaning::Text(op) => self.text_call(func, op, operands, span),
-            Meaning::ToText(wide) => self.to_text(func, wide, operands.remove(0), span),
+            Meaning::ToText(wide) => self.text_of_value(func, wide, operands.remove(0), span),
             // A function without result goes another way.
             Meaning::Outputs => Operand::Error,
         }
@@ -139,7 +139,7 @@ impl<'a> Checker<'_, 'a> {
             // `TO_REAL(1)`: an untyped constant has a type of its own here.
             Operand::Int(_) | Operand::Real(_) => self.settle(operand, at),
             Operand::Value { expr, ty } => match self.elem_of(ty) {
-                None if self.is_text(ty) => return self.from_text(to, expr, span),
+                None if self.is_text(ty) => return self.value_of_text(to, expr, span),
                 Some(_) => self.settle(Operand::Value { expr, ty }, at),
                 None => return self.no_conversion(func, ty, at),
             },

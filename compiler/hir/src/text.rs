@@ -223,7 +223,13 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// `TO_STRING(x)`.
-    pub fn to_text(&mut self, func: &'static StdFn, wide: bool, (operand, at): (Operand, Span), span: Span) -> Operand {
+    pub fn text_of_value(
+        &mut self,
+        func: &'static StdFn,
+        wide: bool,
+        (operand, at): (Operand, Span),
+        span: Span,
+    ) -> Operand {
         let expr = self.settle(operand, at);
         if expr.ty == Types::ERROR {
             return Operand::Error;
@@ -242,7 +248,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// `TO_INT('12')`.
-    pub fn from_text(&mut self, to: Elem, expr: Expr, span: Span) -> Operand {
+    pub fn value_of_text(&mut self, to: Elem, expr: Expr, span: Span) -> Operand {
         let wide = self.string_kind(expr.ty).unwrap_or(false);
         let expr = self.text(TextOp::Read(to), wide, vec![expr], span);
         let ty = expr.ty;
