@@ -114,10 +114,12 @@ impl<'a> Cx<'a> {
         let pous = self.pous.iter().filter(|(_, p)| self.defs.pous[**p].kind == PouKind::FunctionBlock);
         let names = self.types.keys().chain(pous.map(|(n, _)| n)).map(|n| n.as_str()).chain(standard);
         let hint = iec_name(&key).map(str::to_string).or_else(|| similar(&name.text, names));
-        self.push(
-            Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text))
-                .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
-        );
+        self.push(Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text)).help(
+            match hint {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "declare it in a TYPE block, or as a FUNCTION_BLOCK".into(),
+            },
+        ));
         Resolved::error()
     }
 
