@@ -26,12 +26,17 @@ fn exit_codes() {
     let f = folder_with(&[
         ("good.st", COUNTER),
         ("bad.st", "PROGRAM Main\nx := 1;\nEND_PROGRAM\n"),
+        ("warned.st", "PROGRAM Main\nVAR n : INT; END_VAR\nEND_PROGRAM\n"),
         ("fault.st", "PROGRAM Main\nVAR n, z : INT; END_VAR\nn := 1 / z;\nEND_PROGRAM\n"),
     ]);
     let p = f.path();
     let run = |args: &[&str]| plcc(p, args).code;
     assert_eq!(run(&["check", "good.st"]), 0);
     assert_eq!(run(&["check", "bad.st"]), 1);
+    // [G1] 1 on errors only.
+    let done = plcc(p, &["check", "warned.st", "--message-format", "short"]);
+    assert!(done.stderr.starts_with("warned.st:2:5: warning[W0351]: `n`"), "{}", done.stderr);
+    assert_eq!(done.code, 0);
     assert_eq!(run(&["run", "good.st", "--virtual-time", "--cycles", "3"]), 0);
     assert_eq!(run(&["run", "fault.st", "--virtual-time", "--cycles", "3"]), 1);
     assert_eq!(run(&["run", "good.st", "--cycles", "3", "--watch", "Main.q"]), 2);
@@ -41,6 +46,25 @@ fn exit_codes() {
     assert_eq!(run(&["build", "good.st", "-o", "no/such/folder/app"]), 3);
     assert_eq!(run(&["run", "good.st", "--cycles", "1", "--trace", "no/such/t.csv"]), 3);
     assert_eq!(run(&["run", "good.st", "--cycles", "1", "--stimulus", "none.csv"]), 3);
+}
+
+/// [E6] Without checks x / 0 and MOD 0 give 0, in all engines; with them they are faults.
+#[test]
+fn without_checks_division_by_zero_gives_zero() {
+    let text = "PROGRAM Main\nVAR n : INT := 7; z : INT; q, r : INT := 1; END_VAR\n\
+                n := n + 1;\nq := n / z;\nr := n MOD z;\nEND_PROGRAM\n";
+    let f = folder_with(&[("main.st", text)]);
+    let p = f.path();
+    let flags = ["--virtual-time", "--cycles", "2", "--watch", "Main.n,Main.q,Main.r", "--trace", "-"];
+    let expected = "cycle,Main.n,Main.q,Main.r\n1,8,0,0\n2,9,0,0\n";
+    for engine in ["interp", "jit"] {
+        let args = ["run", "main.st", "--engine", engine];
+        assert_eq!(plcc(p, &[&args[..], &["--checks", "none"], &flags].concat()).stdout, expected, "{engine}");
+        let checked = plcc(p, &[&args[..], &flags].concat());
+        assert!(checked.code == 1 && checked.stderr.contains("error[E0601]"), "{engine}: {}", checked.stderr);
+    }
+    assert_eq!(plcc(p, &["build", "main.st", "-o", "app", "--checks", "none"]).code, 0);
+    assert_eq!(command(&p.join("app"), p, &flags).stdout, expected);
 }
 
 #[test]

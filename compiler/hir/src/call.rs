@@ -403,7 +403,8 @@ impl<'a> Checker<'_, 'a> {
         let params = self.parameters(pou, &[Section::Input, Section::InOut]);
         let names: Vec<&str> = params.iter().map(|v| self.cx.defs.vars[*v].name.as_str()).collect();
         let name = self.cx.defs.pous[pou].name.clone();
-        let message = format!("{} arguments for the {} parameters of `{name}`", call.args.len(), names.len());
+        let parameters = if names.len() == 1 { "parameter" } else { "parameters" };
+        let message = format!("{} arguments for the {} {parameters} of `{name}`", call.args.len(), names.len());
         let help = if names.is_empty() { "it has none".into() } else { format!("it takes {}", names.join(", ")) };
         self.report(Diagnostic::new(codes::TOO_MANY_ARGUMENTS, span, message).help(help));
     }

@@ -273,7 +273,8 @@ impl<'a> Checker<'_, 'a> {
                 let ty = self.cx.type_name(base.ty);
                 self.report(
                     Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, format!("{ty} has no component `{}`", name.text))
-                        .also(base.span, format!("this is {ty}")),
+                        .also(base.span, format!("this is {ty}"))
+                        .help("structures, unions and instances of function blocks have components"),
                 );
                 None
             }

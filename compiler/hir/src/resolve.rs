@@ -114,10 +114,12 @@ impl<'a> Cx<'a> {
         let pous = self.pous.iter().filter(|(_, p)| self.defs.pous[**p].kind == PouKind::FunctionBlock);
         let names = self.types.keys().chain(pous.map(|(n, _)| n)).map(|n| n.as_str()).chain(standard);
         let hint = iec_name(&key).map(str::to_string).or_else(|| similar(&name.text, names));
-        self.push(
-            Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text))
-                .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
-        );
+        self.push(Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text)).help(
+            match hint {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "declare it in a TYPE block, or as a FUNCTION_BLOCK".into(),
+            },
+        ));
         Resolved::error()
     }
 
@@ -288,22 +290,21 @@ impl<'a> Cx<'a> {
             self.defs.enums.push(EnumDef { name: name.into(), base, values: Vec::new(), default: 0, span: te.span });
         let (low, high) = base.range().unwrap_or((0, 0));
         let mut next: i128 = 0;
+        let mut seen: FxHashMap<_, (i128, Span)> = FxHashMap::default();
         for value in values {
             if let Some(written) = &value.value {
                 // A later value may be written by an earlier one.
-                let own = self.defs.enums[id].values.iter().find(|(n, _, _)| match &written.kind {
-                    ast::ExprKind::Name(name) => n.eq_ignore_ascii_case(&name.text),
-                    _ => false,
-                });
+                let own = match &written.kind {
+                    ast::ExprKind::Name(name) => seen.get(&fold(&name.text)),
+                    _ => None,
+                };
                 match own {
-                    Some((_, number, _)) => next = *number,
+                    Some((number, _)) => next = *number,
                     None => next = self.const_integer(written, scope).unwrap_or(next),
                 }
             }
-            if let Some((_, _, first)) =
-                self.defs.enums[id].values.iter().find(|(n, _, _)| n.eq_ignore_ascii_case(&value.name.text))
-            {
-                let first = *first;
+            let key = fold(&value.name.text);
+            if let Some(&(_, first)) = seen.get(&key) {
                 self.push(
                     Diagnostic::new(
                         codes::DUPLICATE_NAME,
@@ -327,7 +328,8 @@ impl<'a> Cx<'a> {
                 next = low;
             }
             self.defs.enums[id].values.push((value.name.text.clone(), next, value.name.span));
-            self.enum_values.entry(fold(&value.name.text)).or_default().push((id, next));
+            seen.insert(key.clone(), (next, value.name.span));
+            self.enum_values.entry(key).or_default().push((id, next));
             next += 1;
         }
         if let Some((_, first, _)) = self.defs.enums[id].values.first() {
