@@ -266,13 +266,11 @@ impl<'a> Checker<'_, 'a> {
                 return Operand::Error;
             }
         };
-        // Profile codesys shifts left in 32 bits; the others need the type's own width.
-        let wide = if op == Op::Shl { self.width(elem, span) } else { elem };
-        let expr =
-            if op == Op::Shl { self.with_elem(expr, wide, at) } else { self.settle(Operand::Value { expr, ty }, at) };
-        let bits = crate::operators::bits_of(wide);
-        let kind = ExprKind::Op(op, bits, vec![retype(expr, Types::elem(bits)), count]);
-        let expr = retype(Expr { kind, ty: Types::elem(bits), span }, Types::elem(wide));
+        // In every profile at the width of the operand's type; SHR of a signed integer keeps its sign [P2].
+        let expr = self.settle(Operand::Value { expr, ty }, at);
+        let done = if op == Op::Shr && elem.is_signed() { elem } else { crate::operators::bits_of(elem) };
+        let kind = ExprKind::Op(op, done, vec![retype(expr, Types::elem(done)), count]);
+        let expr = retype(Expr { kind, ty: Types::elem(done), span }, Types::elem(elem));
         Operand::Value { expr, ty: Types::elem(elem) }
     }
 
