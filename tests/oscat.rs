@@ -100,5 +100,8 @@ fn checks() -> String {
 
 /// What went wrong, without the warnings that the library gives by the hundred.
 fn errors(done: &Done) -> String {
-    done.stderr.lines().filter(|l| !l.contains(": warning[") && !l.contains(": hint[")).fold(String::new(), |all, l| all + l + "\n")
+    done.stderr
+        .lines()
+        .filter(|l| !l.contains(": warning[") && !l.contains(": hint["))
+        .fold(String::new(), |all, l| all + l + "\n")
 }

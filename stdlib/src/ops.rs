@@ -240,7 +240,6 @@ pub fn emit(op: Op, elem: Elem, args: &[Val], e: &mut dyn Emit) -> Val {
             return e.call(row, args);
         }
         Op::Shl => return shift(PrimOp::Shl, repr, args, e),
-        Op::Shr if signed => return shift(PrimOp::ShrS, repr, args, e),
         Op::Shr => return shift(PrimOp::ShrU, repr, args, e),
         Op::Rol => return shift(PrimOp::Rotl, repr, args, e),
         Op::Ror => return shift(PrimOp::Rotr, repr, args, e),

@@ -266,11 +266,14 @@ impl<'a> Checker<'_, 'a> {
                 return Operand::Error;
             }
         };
-        // In every profile at the width of the operand's type; SHR of a signed integer keeps its sign [P2].
+        // The result has the operand's type and is cut to it. Narrow signed integers are shifted right in 32 bits, so that the
+        // zeros come in above them (\[P2\] \[P3\]); the other operations are the same at the type's own width.
         let expr = self.settle(Operand::Value { expr, ty }, at);
-        let done = if op == Op::Shr && elem.is_signed() { elem } else { crate::operators::bits_of(elem) };
-        let kind = ExprKind::Op(op, done, vec![retype(expr, Types::elem(done)), count]);
-        let expr = retype(Expr { kind, ty: Types::elem(done), span }, Types::elem(elem));
+        let done = if op == Op::Shr && elem.is_signed() { self.width(elem, span) } else { elem };
+        let bits = crate::operators::bits_of(done);
+        let expr = retype(self.with_elem(expr, done, at), Types::elem(bits));
+        let shifted = Expr { kind: ExprKind::Op(op, bits, vec![expr, count]), ty: Types::elem(bits), span };
+        let expr = self.with_elem(retype(shifted, Types::elem(done)), elem, span);
         Operand::Value { expr, ty: Types::elem(elem) }
     }
 
