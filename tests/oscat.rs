@@ -19,7 +19,7 @@ const PLCC: &str = env!("CARGO_BIN_EXE_plcc-under-test");
 const RUN: [&str; 5] = ["--virtual-time", "--cycles", "130", "--trace", "-"];
 
 /// POUs with a verdict; fewer means that checks got lost.
-const CHECKED_AT_LEAST: usize = 500;
+const CHECKED_AT_LEAST: usize = 530;
 
 #[test]
 fn known_values() {
@@ -61,8 +61,8 @@ fn same(engine: &str, reference: &str, got: &str) {
 /// Every check has passed, every verdict is TRUE, and a verdict's POU is one of the library that the checks call.
 fn judge(trace: &str, library: &Path) {
     let mut lines = trace.lines();
-    let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let last: Vec<&str> = lines.next_back().unwrap_or_default().splitn(names.len(), ',').collect();
+    let names = fields(lines.next().unwrap_or_default());
+    let last = fields(lines.next_back().unwrap_or_default());
     let value = |name: &str| last[names.iter().position(|n| *n == name).unwrap_or_else(|| panic!("no column {name}"))];
     assert_eq!(value("Failed"), "0", "failed checks: {}", value("Log"));
 
@@ -76,8 +76,18 @@ fn judge(trace: &str, library: &Path) {
         assert!(called, "{pou} has a verdict but is never called");
         verdicts.insert(pou);
     }
-    println!("{} of {} POUs, {} checks", verdicts.len(), pous.len(), value("Checks"));
+    println!("{} POUs, {} checks", verdicts.len(), value("Checks"));
     assert!(verdicts.len() >= CHECKED_AT_LEAST, "only {} POUs have a verdict", verdicts.len());
+}
+
+/// The fields of a line; commas between double quotes do not part them.
+fn fields(line: &str) -> Vec<&str> {
+    let mut quoted = false;
+    line.split(|c| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    })
+    .collect()
 }
 
 /// Names of the POUs that a source declares, as it writes them.
