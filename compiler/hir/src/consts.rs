@@ -147,6 +147,22 @@ impl Cx<'_> {
                     init = element_init(&init, flat as u64);
                     ty = elem;
                 }
+                (Step::Character { index, first, .. }, Type::String { capacity, .. }) => {
+                    let v = self.eval(index, reads)? as i64;
+                    let low = i64::from(*first);
+                    if v < low || v > i64::from(capacity) {
+                        return Err(NotConstant::Faults(index.span, Fault::IndexOutOfBounds));
+                    }
+                    let at = (v - low) as usize;
+                    let unit = match &init {
+                        Init::String(s) => s.get(at).map(|c| u64::from(*c)),
+                        Init::WString(s) => s.get(at).map(|c| u64::from(*c)),
+                        _ => None,
+                    };
+                    init = Init::Scalar(unit.unwrap_or(0));
+                    // A step behind it goes into its bits.
+                    ty = crate::types::Types::VOID;
+                }
                 _ => return Err(varies),
             }
         }

@@ -197,13 +197,16 @@ impl<'c, 'a> Checker<'c, 'a> {
             ExprKind::WString(s) => s.len(),
             _ => return,
         };
-        if let Type::String { capacity, .. } = self.cx.defs.types.get(target)
+        if let Type::String { capacity, wide } = self.cx.defs.types.get(target)
             && length > *capacity as usize
         {
             let message = format!("this text has {length} characters, only {capacity} fit");
+            let wide = *wide;
             self.report(
-                Diagnostic::new(codes::STRING_CUT, expr.span, message)
-                    .help(format!("declare the variable as STRING[{length}] or shorten the text")),
+                Diagnostic::new(codes::STRING_CUT, expr.span, message).help(format!(
+                    "declare the variable as {}[{length}] or shorten the text",
+                    crate::text::keyword(wide)
+                )),
             );
         }
     }

@@ -18,7 +18,8 @@ fn same_conversion(func: &StdFn, from: &str) -> Option<String> {
     plcc_stdlib::funcs::find(&name).map(|_| name)
 }
 
-fn keyword(wide: bool) -> &'static str {
+/// What a kind of string is called.
+pub(crate) fn keyword(wide: bool) -> &'static str {
     if wide { "WSTRING" } else { "STRING" }
 }
 

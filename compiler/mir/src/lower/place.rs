@@ -70,6 +70,8 @@ impl FuncLower<'_, '_> {
         let bytes = match (purpose, access.part) {
             (Purpose::Address, _) => 0,
             (Purpose::Access, Some(part)) => part.word.bytes(),
+            // The capacity came with the reference; at least the closing 0 is there.
+            (Purpose::Access, None) if access.capacity.is_some() => 1,
             (Purpose::Access, None) => self.cx.layout.size(self.defs, access.ty),
         };
         self.check_reference(&mut access, place, bytes);
@@ -121,14 +123,18 @@ impl FuncLower<'_, '_> {
     fn follow_in_out(&mut self, mut access: Access, id: VarId) -> Access {
         if self.defs.vars[id].section == plcc_hir::Section::InOut {
             let reference = self.b.load(Repr::I32, access.place.clone(), false);
-            if let Type::AnyString { .. } = self.defs.types[access.ty] {
-                access.capacity = Some(self.b.load(Repr::I32, access.place.plus(Repr::I32.bytes()), false));
-            }
+            access.capacity = self.carried_capacity(&access);
             access.place = Place::new(Base::Reference(reference), 0);
             access.normalise = true;
             access.unchecked = None;
         }
         access
+    }
+
+    /// The capacity behind the reference that a VAR_IN_OUT holds, if it is a string of any.
+    fn carried_capacity(&mut self, slot: &Access) -> Option<ValueId> {
+        let carries = matches!(self.defs.types[slot.ty], Type::AnyString { .. });
+        carries.then(|| self.b.load(Repr::I32, slot.place.clone().plus(Repr::I32.bytes()), false))
     }
 
     fn root(&mut self, place: &body::Place) -> Access {
@@ -192,9 +198,10 @@ impl FuncLower<'_, '_> {
                     // From outside of the call: the reference of the last one, NULL before the first.
                     let mut slot = self.member_slot(access, *id);
                     self.check_reference(&mut slot, place, Repr::I32.bytes());
-                    let reference = self.b.load(Repr::I32, slot.place, false);
+                    let reference = self.b.load(Repr::I32, slot.place.clone(), false);
                     let name = path::of_place(self.defs, place, n + 1);
-                    *access = self.follow(reference, slot.ty, name, place);
+                    let capacity = self.carried_capacity(&slot);
+                    *access = Access { capacity, ..self.follow(reference, slot.ty, name, place) };
                 } else {
                     *access = self.member(access, *id);
                 }
