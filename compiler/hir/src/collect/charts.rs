@@ -72,6 +72,8 @@ fn declare_step<'a>(cx: &mut Cx<'a>, owner: PouId, step: &'a ast::Step) {
     }
     cx.defs.pous[owner].vars.push(var);
     cx.pou_slots[owner].scope.insert(key, Local::Var(var));
+    // A step is used by being there.
+    cx.mentioned.borrow_mut().insert(var);
     cx.steps.insert(step, var);
 }
 
