@@ -23,13 +23,17 @@ pub enum Form {
 pub fn chart(random: &mut fastrand::Rng) -> (Chart, Form) {
     let mut chart = Chart { strong: random.u8(..4) == 0, edge: random.u8(..5) == 0, ..Chart::default() };
     let networks = 1 + usize::from(random.u8(..4) == 0);
-    for _ in 0..networks {
+    // Large charts are compiled in another way.
+    let least_steps = if random.u8(..12) == 0 { random.usize(60..120) } else { 0 };
+    let mut count = 0;
+    while count < networks || chart.steps.len() < least_steps {
+        count += 1;
         match random.u8(..5) {
             0 | 1 => network(&mut chart, random),
             _ => structured(&mut chart, random),
         }
     }
-    let actions = random.usize(1..6);
+    let actions = random.usize(1..6) + chart.steps.len() / 10;
     chart.actions = (0..actions).map(|_| if random.bool() { ActionKind::Block } else { ActionKind::Flag }).collect();
     for step in &mut chart.steps {
         for _ in 0..random.usize(..4) {
