@@ -148,10 +148,8 @@ impl Case {
     fn judge(&self, engine: &str, done: Done) -> Result<(), Failed> {
         let say = |e: Failed| Failed::from(format!("{engine}: {}", e.message().unwrap_or_default()));
         // A run prints its messages after those of the compiler, which the linked program does not have.
-        let faults: String = match done.stderr.find("error[E06") {
-            Some(at) => done.stderr[at..].to_string(),
-            None => String::new(),
-        };
+        let first = ["error[E06", "warning[W06"].iter().filter_map(|m| done.stderr.find(m)).min();
+        let faults = first.map_or("", |at| &done.stderr[at..]).to_string();
         if done.code != self.exit {
             return Err(format!("{engine}: exit code {} instead of {}\n{}", done.code, self.exit, done.stderr).into());
         }

@@ -367,7 +367,7 @@ impl Stimulus {
     pub fn next(&mut self, now: Time) -> (Inputs, bool) {
         self.x = self.x.wrapping_mul(1664525).wrapping_add(1013904223);
         let x = self.x;
-        let bits = (0..INPUTS).map(|n| (x / (1u32 << (8 + 3 * n))) % (2 + n as u32 % 3) == 0).collect();
+        let bits = (0..INPUTS).map(|n| (x / (1u32 << (8 + 3 * n))).is_multiple_of(2 + n as u32 % 3)).collect();
         let duration = i64::from((x / 67108864) % 6) * 10 * MS;
         (Inputs { now, bits, duration }, (x / 1024) % 8 > 1)
     }

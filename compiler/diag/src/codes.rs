@@ -1117,4 +1117,8 @@ SHL, SHR, ROL or ROR was called with a negative count. The task stopped, outputs
 The step of a FOR loop was 0 when the loop started; it would never end. The task stopped, outputs went to their safe state.\n";
     FAULT_DEADLINE "E0608" Error "deadline exceeded" "\
 One execution of a task took longer than its watchdog allows (1 s of real time when nothing else is said). The line is one of the loop that ran. The task stopped, outputs went to their safe state.\n";
+    STEP_ACTIVATED_TWICE "W0609" Warning "a step was activated while it was active" "\
+Two ways through a chart met in one step: from here on there is one active step where there were two. Often a branch was left \
+without waiting for the others, or a convergence was bypassed. The chart goes on; each step is reported once.\n\n\
+With `{sfc_firing := 'strong'}` a transition waits until the steps behind it are inactive.\n";
 }

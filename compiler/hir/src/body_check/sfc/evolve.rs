@@ -22,6 +22,8 @@ pub(super) struct State {
     pub chosen: IndexVec<TransitionId, Place>,
     /// With [`Trigger::Edge`]: the number of this call, and by transition the number of the call in which a TRUE counts.
     pub edges: Option<(Place, IndexVec<TransitionId, Place>)>,
+    /// A step was activated while it was active; the runtime takes it back. `None` where that cannot be.
+    pub merged: Option<Place>,
 }
 
 /// Steps (4) and (5).
@@ -146,6 +148,11 @@ pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<
 
 /// A step becomes active: its time starts (\[F6\]).
 fn activate(chart: &Chart, state: &State, step: StepId, span: Span, out: &mut Vec<Stmt>) {
+    if let Some(merged) = &state.merged {
+        let yes = || constant(1, BOOL, span);
+        let tell = vec![assign(of_step(chart, step, field::TWICE), yes(), span), assign(merged.clone(), yes(), span)];
+        out.push(when(active(chart, step), tell, span));
+    }
     out.push(assign(of_step(chart, step, field::X), constant(1, BOOL, span), span));
     out.push(assign(of_step(chart, step, field::T), constant(0, Elem::Time, span), span));
     out.push(assign(of_step(chart, step, field::START), read_temp(state.now, Elem::Time, span), span));
@@ -165,7 +172,13 @@ pub(super) fn state(w: &mut Writer, chart: &Chart) -> State {
         let ty = Types::elem(Elem::Lint);
         (variable(w.hidden("calls", ty, chart.span), ty, chart.span.before()), due)
     });
-    State { now, fires, chosen, edges }
+    // Where every transition leads from one step to one, each network has one active step for ever.
+    let sequential = chart.transitions.iter().all(|t| t.from.len() == 1 && t.to.len() == 1);
+    let merged = (!sequential).then(|| {
+        let ty = Types::elem(BOOL);
+        variable(w.hidden("merged", ty, chart.span), ty, chart.span.before())
+    });
+    State { now, fires, chosen, edges, merged }
 }
 
 /// What comes before step (1): in the first call the time of the initial steps starts (\[F6\]); after a call that did not come
