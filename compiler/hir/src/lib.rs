@@ -41,6 +41,7 @@ mod std_call;
 mod text;
 mod text_constant;
 mod time_arithmetic;
+pub mod structure;
 pub mod types;
 mod var_config;
 pub mod visit;
