@@ -11,6 +11,7 @@ pub mod body;
 mod body_check;
 mod call;
 pub mod chart;
+mod chart_structure;
 mod collect;
 mod comparison;
 mod config;
@@ -80,6 +81,7 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     cycles::containment(&mut cx);
     cx.init_all();
     body_check::check_all(&mut cx);
+    chart_structure::check(&mut cx);
     cycles::recursion(&mut cx);
     references::spread_addresses(&mut cx.defs);
     lints::run(&mut cx, units);

@@ -132,15 +132,16 @@ impl View<'_> {
     // ---- a step activated while active ----
 
     fn activated_twice(&self, complete: bool) -> Option<Finding> {
-        let mut best: Option<(u32, usize, super::explore::Edge)> = None;
+        // The cheapest; of these one in which a single transition fires.
+        let mut best: Option<((u32, usize), usize, super::explore::Edge)> = None;
         let mut steps = Bits::default();
         for marking in (0..self.graph.explored()).filter(|&m| self.clean(m)) {
             for edge in self.graph.edges(marking).iter().filter(|e| e.contact) {
-                let cost = self.ways.cost[marking] + price(self.work, self.graph, edge);
+                let fired = self.graph.fired(edge);
+                let cost = (self.ways.cost[marking] + price(self.work, self.graph, edge), fired.len());
                 if best.is_none_or(|(least, ..)| cost < least) {
                     best = Some((cost, marking, *edge));
                 }
-                let fired = self.graph.fired(edge);
                 if let Some((step, _)) = twice(self.work, self.graph.markings.get(marking), &fired) {
                     steps.add(step);
                 }

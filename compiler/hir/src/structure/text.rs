@@ -1,6 +1,6 @@
 //! Findings as sentences in the words of the standard.
 
-use super::{Finding, Kind, Net, Path};
+use super::{Finding, Kind, Net, Path, Rule};
 
 /// What to tell about a finding.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,10 +19,19 @@ const SHOWN_STEPS: usize = 8;
 /// The sentences for a finding.
 pub fn describe(net: &Net, finding: &Finding) -> Text {
     let words = Words { net, finding };
-    let message = words.message();
     let mut help = Vec::new();
-    help.extend(words.way());
-    help.extend(words.cause());
+    help.extend(words.way().map(|way| format!("firing path: {way}")));
+    // Where a jump is the only reason, it is the mistake and the rest its consequence.
+    let message = match (words.cause(), finding.kind) {
+        (Some(cause), Kind::ActivatedTwice) if !finding.certain => {
+            help.push(format!("so {}", words.message()));
+            cause
+        }
+        (cause, _) => {
+            help.extend(cause);
+            words.message()
+        }
+    };
     help.extend(words.advice());
     Text { message, help }
 }
@@ -119,13 +128,28 @@ impl Words<'_> {
                 }
             }
             Kind::TotallyStuck | Kind::PartiallyStuck => self.waits()?,
-            Kind::ActivatedTwice | Kind::RulesDiffer => format!(
-                "{} has activated {}, which was still active",
-                self.transition(*self.finding.transitions.first()?),
-                self.steps(&self.finding.steps[..1])
-            ),
+            Kind::ActivatedTwice | Kind::RulesDiffer => self.twice()?,
         };
         Some(format!("{way}: now {end}"))
+    }
+
+    fn twice(&self) -> Option<String> {
+        let step = *self.finding.steps.first()?;
+        let fired = self.finding.path.firings.last()?;
+        let by: Vec<usize> = fired.iter().copied().filter(|&t| self.net.transitions[t].to.contains(&step)).collect();
+        Some(match by.as_slice() {
+            [first, second, ..] => format!(
+                "{} and {} have activated {} in the same call",
+                self.transition(*first),
+                self.transition(*second),
+                self.steps(&[step])
+            ),
+            _ => format!(
+                "{} has activated {}, which was still active",
+                self.transition(*self.finding.transitions.first()?),
+                self.steps(&[step])
+            ),
+        })
     }
 
     fn waits(&self) -> Option<String> {

@@ -14,7 +14,12 @@ fn told(text: &str) -> Vec<(Kind, bool, Vec<String>)> {
 fn first_help(text: &str) -> String {
     let net = net(text);
     let report = report(&net);
-    text::describe(&net, report.findings.first().expect("a finding")).help.first().expect("a path").clone()
+    text::describe(&net, report.findings.first().expect("a finding"))
+        .help
+        .first()
+        .expect("a path")
+        .trim_start_matches("firing path: ")
+        .to_string()
 }
 
 fn expect(text: &str, kind: Kind, certain: bool, steps: &[&str]) {
@@ -86,11 +91,13 @@ fn a_jump_out_of_a_lane_to_the_start_activates_the_others_twice() {
     assert_eq!((f.kind, f.certain, names(&net, &f.steps)), (Kind::ActivatedTwice, false, vec!["S2".to_string()]));
     let cause = f.cause.as_ref().expect("a cause");
     assert_eq!((cause.transition, names(&net, &cause.left), cause.bypassed), (1, vec!["S2".to_string()], Some(2)));
+    let text = text::describe(&net, f);
+    assert_eq!(text.message, "transition `t2` bypasses the convergence of transition `t3`: `S2` stays active");
     assert_eq!(
-        text::describe(&net, f).help[..2],
+        text.help[..2],
         [
-            "S1 -t1-> S2, S3 -t2-> S1, S2 -t1-> S2, S3: now transition `t1` has activated `S2`, which was still active",
-            "transition `t2` bypasses the convergence of transition `t3`: `S2` stays active"
+            "firing path: S1 -t1-> S2, S3 -t2-> S1, S2 -t1-> S2, S3: now transition `t1` has activated `S2`, which was still active",
+            "so step `S2` can be activated while it is active"
         ]
     );
     assert_eq!(report.findings.len(), 1);
@@ -116,7 +123,7 @@ fn simultaneous_branches_joined_as_if_alternative() {
     assert_eq!((found[0].0, found[0].1, found[0].2[0].as_str()), (Kind::ActivatedTwice, true, "S4"));
     assert_eq!(
         first_help(text),
-        "S1 -t1-> S2, S3 -t2+t3-> S4: now transition `t3` has activated `S4`, which was still active"
+        "S1 -t1-> S2, S3 -t2-> S3, S4 -t3-> S4: now transition `t3` has activated `S4`, which was still active"
     );
 }
 
@@ -135,6 +142,20 @@ fn the_strong_rule_takes_a_pipeline() {
     pipeline.rule = Rule::Strong;
     let kinds: Vec<Kind> = report(&pipeline).findings.iter().map(|f| f.kind).collect();
     assert_eq!(kinds, [Kind::RulesDiffer]);
+}
+
+/// The strong rule looks at the marking before anything fires: two transitions may still activate a step in one call.
+#[test]
+fn by_the_strong_rule_two_transitions_can_meet_in_one_call() {
+    let mut both = net("S1 -t1-> S2, S3; S2 -t2-> S4; S3 -t3-> S4; S4 -t4-> S1");
+    both.rule = Rule::Strong;
+    let report = report(&both);
+    let finding = report.findings.iter().find(|f| f.kind == Kind::ActivatedTwice).expect("found");
+    assert_eq!(
+        text::describe(&both, finding).help[0],
+        "firing path: S1 -t1-> S2, S3 -t2+t3-> S4: now transition `t2` and transition `t3` have activated `S4` in the same call"
+    );
+    assert!(!finding.certain);
 }
 
 #[test]

@@ -283,5 +283,5 @@ fn check(seeds: u64) {
 /// `RANDOM_NETS=1000000` for the long run.
 #[test]
 fn the_analysis_agrees_with_brute_force() {
-    check(std::env::var("RANDOM_NETS").ok().and_then(|n| n.parse().ok()).unwrap_or(1500));
+    check(std::env::var("RANDOM_NETS").ok().and_then(|n| n.parse().ok()).unwrap_or(800));
 }
