@@ -213,9 +213,11 @@ impl Words<'_> {
                 advice.push(
                     "simultaneous branches are joined by one transition with all their last steps behind FROM".into(),
                 );
-                advice.push(
-                    "here the firing rules differ: with {sfc_firing := 'strong'} the transition would wait".into(),
-                );
+                if self.net.rule == Rule::Weak {
+                    advice.push(
+                        "here the firing rules differ: with {sfc_firing := 'strong'} the transition would wait".into(),
+                    );
+                }
             }
             Kind::RulesDiffer => {
                 advice.push("a chart that needs no strong rule runs the same on every controller".into());
