@@ -7,6 +7,7 @@
 
 mod generate;
 mod model;
+mod structure;
 
 use generate::{Form, Stimulus};
 use model::{ActionKind, Chart, Model, Time};
@@ -15,6 +16,7 @@ use plcc_mir::interp::Interp;
 use plcc_mir::layout::{Layout, Slot};
 use plcc_tests::{command, compile::compile_with_layout};
 use std::path::Path;
+use structure::Ruled;
 
 const PLCC: &str = env!("CARGO_BIN_EXE_plcc-under-test");
 const CYCLES: i64 = 60;
@@ -34,7 +36,8 @@ struct Batch {
     profile: Profile,
 }
 
-fn batch(seed: u64, count: u64) -> Batch {
+/// Charts for one program; those that are `built` by plcc are without errors in their structure.
+fn batch(seed: u64, count: u64, built: bool) -> Batch {
     let mut random = fastrand::Rng::with_seed(seed);
     let profile = if random.u8(..3) == 0 { Profile::Codesys } else { Profile::Strict };
     let stimulus = random.u32(..);
@@ -43,6 +46,9 @@ fn batch(seed: u64, count: u64) -> Batch {
     let mut charts = Vec::new();
     for n in 0..count {
         let (mut chart, form) = generate::chart(&mut random);
+        while built && !Ruled::new(&chart).compiles() {
+            (chart, _) = generate::chart(&mut random);
+        }
         chart.final_scan = profile == Profile::Codesys;
         text.push_str(&generate::text(&chart, form, &format!("P{n}_"), &mut random));
         instances.push_str(&format!("  PROGRAM I{n} WITH T : P{n}_Main;\n"));
@@ -144,6 +150,9 @@ struct Seen {
     moves: u64,
     /// Runs of action bodies.
     runs: u64,
+    /// Charts whose structure was analysed to the end, and those without errors in it.
+    proved: u64,
+    sound: u64,
 }
 
 /// Runs a batch on the model, the interpreter and native code; `Err` has the number of the chart and what differs.
@@ -159,6 +168,7 @@ fn agree(batch: &Batch, seen: &mut Seen) -> Result<(), (usize, String)> {
     code.init(b, true);
     let list = batch.charts.iter().enumerate();
     let places: Vec<Places> = list.map(|(n, (c, form))| Places::find(&checked, &layout, n, c, *form)).collect();
+    let ruled: Vec<Ruled> = batch.charts.iter().map(|(c, _)| Ruled::new(c)).collect();
     let mut models: Vec<Model> = batch.charts.iter().map(|(c, _)| Model::new(c)).collect();
     let mut stimulus = Stimulus::new(batch.seed);
     for cycle in 1..=CYCLES {
@@ -174,6 +184,9 @@ fn agree(batch: &Batch, seen: &mut Seen) -> Result<(), (usize, String)> {
                 models[n].call(&inputs);
             }
             seen.moves += u64::from(models[n].x != before);
+            if let Some(what) = ruled[n].contradiction(chart, &models[n]) {
+                return Err((n, format!("cycle {cycle}: the structure analysis is wrong: {what}")));
+            }
             for (engine, memory) in [("interpreter", &*a), ("native code", &*b)] {
                 let differences = places[n].differences(memory, &models[n], chart);
                 if !differences.is_empty() {
@@ -183,6 +196,8 @@ fn agree(batch: &Batch, seen: &mut Seen) -> Result<(), (usize, String)> {
         }
     }
     seen.charts += models.len() as u64;
+    seen.proved += ruled.iter().filter(|r| r.complete()).count() as u64;
+    seen.sound += ruled.iter().filter(|r| r.compiles()).count() as u64;
     seen.runs += models.iter().flat_map(|m| &m.runs).sum::<u64>();
     Ok(())
 }
@@ -212,7 +227,7 @@ fn engines_agree_with_the_model() {
                 let work = move || {
                     let mut seen = Seen::default();
                     for seed in (first + w..first + batches).step_by(workers as usize) {
-                        let batch = batch(seed, BATCH);
+                        let batch = batch(seed, BATCH, false);
                         if let Err((n, what)) = agree(&batch, &mut seen) {
                             fail(seed, &batch, n, &what);
                         }
@@ -227,7 +242,10 @@ fn engines_agree_with_the_model() {
     let charts: u64 = totals.iter().map(|s| s.charts).sum();
     let moves: u64 = totals.iter().map(|s| s.moves).sum();
     let runs: u64 = totals.iter().map(|s| s.runs).sum();
+    let (proved, sound): (u64, u64) = totals.iter().fold((0, 0), |(p, s), t| (p + t.proved, s + t.sound));
     println!("{charts} charts of {CYCLES} scans; the marking changed {moves} times, bodies ran {runs} times");
+    println!("structure: {proved} analysed to the end, {sound} without errors");
+    assert!(proved * 10 > charts * 9 && sound * 5 > charts, "{proved} proved, {sound} sound of {charts}");
     assert!(charts >= count);
     assert!(moves > charts * 5 && runs > charts * 10, "{moves} moves, {runs} runs of {charts} charts");
 }
@@ -237,7 +255,7 @@ fn linked_programs_agree_with_the_interpreter() {
     let (count, first) = (setting("RANDOM_CHARTS_LINKED", 60), setting("RANDOM_SEED", 1) + 1_000_000);
     let size = count.clamp(1, 300);
     for seed in first..first + count.div_ceil(size) {
-        linked(seed, &batch(seed, size));
+        linked(seed, &batch(seed, size, true));
     }
 }
 

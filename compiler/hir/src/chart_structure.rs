@@ -3,14 +3,14 @@
 //! In: the resolved charts. Out: messages. What is found and when it is certain stands in [`crate::structure`].
 
 use crate::chart::{Chart, Firing, StepId, TransitionId};
-use crate::cx::Cx;
+use crate::defs::Defs;
 use crate::structure::{self, Finding, Kind, Limits, Net, Proof, Rule, Step, Transition};
-use plcc_diag::{Code, Diagnostic, Span, codes};
+use plcc_diag::{Code, Diagnostic, Diagnostics, Span, codes};
 
-/// Analyses every chart.
-pub(crate) fn check(cx: &mut Cx) {
-    let messages: Vec<Diagnostic> = cx.defs.charts.iter().flat_map(messages).collect();
-    messages.into_iter().for_each(|message| cx.push(message));
+/// Analyses every chart. It is not part of [`crate::check`]: what a chart does is defined also where its structure is wrong,
+/// and tests want to see it.
+pub fn check(defs: &Defs, diags: &mut Diagnostics) {
+    defs.charts.iter().flat_map(messages).for_each(|message| diags.push(message));
 }
 
 /// A chart without its actions and conditions: steps and transitions keep their numbers.
