@@ -989,7 +989,7 @@ No run of the chart activates the step, whatever the conditions do: no transitio
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Run: END_STEP\n\
 STEP Flush: END_STEP\n\
@@ -1003,7 +1003,7 @@ A convergence fires when all steps behind FROM are active. Each of these is acti
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1021,7 +1021,7 @@ A step waits for ever for a transition that can never fire, and the whole chart 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1037,7 +1037,7 @@ It depends on the conditions whether the chart comes to a marking in which a ste
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1054,7 +1054,7 @@ A step waits for ever while other steps go on: a loop is never left, although a 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1072,7 +1072,7 @@ It depends on the conditions whether a step comes to wait for ever while others 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1092,7 +1092,7 @@ Whatever the conditions do, a transition at last activates a step that is still 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1108,7 +1108,7 @@ It depends on the conditions whether a transition activates a step that is still
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1124,7 +1124,7 @@ The transition leaves one of several simultaneous branches and goes on outside, 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b, c, d : BOOL; END_VAR\n\
 INITIAL_STEP Idle: END_STEP\n\
 STEP Left: END_STEP\n\
 STEP Right: END_STEP\n\
@@ -1140,7 +1140,7 @@ With `{sfc_firing := 'strong'}` a transition waits until its succeeding steps ar
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b, c, d : BOOL; END_VAR\n\
+VAR_INPUT a, b : BOOL; END_VAR\n\
 {sfc_firing := 'strong'}\n\
 INITIAL_STEP Feed: END_STEP\n\
 STEP Belt: END_STEP\n\
