@@ -257,3 +257,40 @@ fn real_time_runs_stop_on_a_signal_with_a_whole_trace() {
         assert_eq!(line, format!("{n},{n}"));
     }
 }
+
+const CHART: &str = "FUNCTION_BLOCK Lane\nVAR_INPUT go : BOOL; END_VAR\nINITIAL_STEP A: END_STEP\nSTEP B: END_STEP\n\
+    TRANSITION FROM A TO B := go AND (1 < 2); END_TRANSITION\nTRANSITION FROM B TO A := NOT go; END_TRANSITION\nEND_FUNCTION_BLOCK\n";
+
+#[test]
+fn charts_are_drawn_and_active_steps_marked() {
+    let trace = "cycle,Main.left.A.X,Main.left.B.X,Main.right.A.X,Main.right.B.X\n1,TRUE,FALSE,TRUE,FALSE\n2,FALSE,TRUE,TRUE,FALSE\n";
+    let f = folder_with(&[("lane.st", CHART), ("main.st", COUNTER), ("run.csv", trace)]);
+    let graph = |args: &[&str]| plcc(f.path(), &[&["graph", "lane.st", "--sfc"], args].concat());
+    let done = graph(&["-o", "lane.svg"]);
+    assert_eq!((done.code, done.stdout.as_str()), (0, ""), "{}", done.stderr);
+    let text = std::fs::read_to_string(f.path().join("lane.svg")).expect("the drawing");
+    assert!(text.starts_with("<svg ") && text.contains(">go AND (1 &lt; 2)</text>"), "{text}");
+    assert_eq!(text, graph(&["--pou", "LANE"]).stdout);
+    let dots = |args: &[&str]| graph(args).stdout.matches("<circle ").count();
+    assert_eq!(dots(&[]), 0);
+    // The box of B is filled in cycle 2 of `left`, that of A in `right`.
+    let live = |instance: &str| {
+        let text = graph(&["--trace", "run.csv", "--cycle", "2", "--instance", instance]).stdout;
+        let box_at = text.find("class=\"box live\"").expect("an active step");
+        text[box_at..].split("</text>").next().expect("its name").chars().last()
+    };
+    assert_eq!((live("main.left"), live("Main.right")), (Some('B'), Some('A')));
+    let wrong = |args: &[&str], code: i32, part: &str| {
+        let done = graph(args);
+        assert!(done.code == code && done.stderr.contains(part), "{args:?}: {} {}", done.code, done.stderr);
+    };
+    wrong(&["--trace", "run.csv", "--cycle", "2"], 2, "choose with --instance: Main.left, Main.right");
+    wrong(&["--trace", "run.csv", "--cycle", "3"], 2, "there is no cycle 3; the last one is 2");
+    wrong(&["--trace", "run.csv"], 2, "--cycle");
+    wrong(&["--trace", "run.csv", "--cycle", "1", "--instance", "Main.middle"], 2, "`Main.middle.A.X`");
+    wrong(&["--trace", "no.csv", "--cycle", "1"], 3, "no.csv");
+    wrong(&["--pou", "Lame"], 2, "did you mean `Lane`?");
+    wrong(&["-o", "no/such/lane.svg"], 3, "lane.svg");
+    assert_eq!(plcc(f.path(), &["graph", "main.st", "--sfc"]).code, 2);
+    assert_eq!(plcc(f.path(), &["graph", "lane.st"]).code, 2);
+}

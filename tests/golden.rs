@@ -5,11 +5,13 @@
 //!                    //! run: --cycles 6 --interval 10ms --watch Main.x
 //!                    //! profile: codesys
 //!                    //! exit: 1                 (of the run; 0 is the default)
+//!                    //! graph: --cycle 3        (further flags of the drawing)
 //! name.stim.csv    the stimulus of the run
 //! name.trace.csv   the trace: on the interpreter, in the JIT and of the linked program, all against this one file
 //! name.err         standard error of the run, the same in all three
 //! name.diag        what `plcc check` prints
 //! name.hir, .mir, .ast, .tokens   the print of that stage
+//! name.svg         what `plcc graph --sfc` draws
 //! ```
 //! `UPDATE=1` rewrites what exists and makes a missing trace or diag; read it before you commit it.
 
@@ -53,6 +55,7 @@ struct Case {
     name: String,
     run: Option<Vec<String>>,
     profile: Option<String>,
+    graph: Vec<String>,
     exit: i32,
 }
 
@@ -64,6 +67,7 @@ impl Case {
             name: path.strip_prefix(&cases).unwrap_or(path).display().to_string(),
             run: None,
             profile: None,
+            graph: Vec::new(),
             exit: 0,
         };
         let bytes = std::fs::read(path).unwrap_or_default();
@@ -73,6 +77,7 @@ impl Case {
             match key.trim() {
                 "run" => case.run = Some(value.split_whitespace().map(str::to_string).collect()),
                 "profile" => case.profile = Some(value.to_string()),
+                "graph" => case.graph = value.split_whitespace().map(str::to_string).collect(),
                 "exit" => case.exit = value.parse().unwrap_or(0),
                 other => panic!("{}: unknown directive `{other}`", path.display()),
             }
@@ -113,7 +118,17 @@ impl Case {
                 checked = true;
             }
         }
-        if checked { Ok(()) } else { Err("nothing is checked: no run directive, no .diag, no stage".into()) }
+        if self.sibling("svg").exists() || (!self.graph.is_empty() && update()) {
+            let flags = self.graph.iter().map(String::as_str);
+            let args = ["graph", &self.name, "--sfc"].into_iter().chain(flags).collect();
+            let done = self.plcc(&self.with_profile(args));
+            if done.code != 0 {
+                return Err(format!("graph: exit code {}\n{}", done.code, done.stderr).into());
+            }
+            self.compare("svg", &done.stdout)?;
+            checked = true;
+        }
+        if checked { Ok(()) } else { Err("nothing is checked: no run directive, no .diag, no stage, no .svg".into()) }
     }
 
     fn no_stage(&self) -> bool {
@@ -148,10 +163,8 @@ impl Case {
     fn judge(&self, engine: &str, done: Done) -> Result<(), Failed> {
         let say = |e: Failed| Failed::from(format!("{engine}: {}", e.message().unwrap_or_default()));
         // A run prints its messages after those of the compiler, which the linked program does not have.
-        let faults: String = match done.stderr.find("error[E06") {
-            Some(at) => done.stderr[at..].to_string(),
-            None => String::new(),
-        };
+        let first = ["error[E06", "warning[W06"].iter().filter_map(|m| done.stderr.find(m)).min();
+        let faults = first.map_or("", |at| &done.stderr[at..]).to_string();
         if done.code != self.exit {
             return Err(format!("{engine}: exit code {} instead of {}\n{}", done.code, self.exit, done.stderr).into());
         }

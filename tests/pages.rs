@@ -20,9 +20,10 @@ fn each_example_yields_exactly_its_code() {
     let mut wrong = Vec::new();
     for info in codes::ALL.iter().map(|c| c.info()) {
         let Some((text, codesys)) = example(info.page) else {
-            // Faults, the project file, what is not built yet and what takes pages of text (too deep, too many errors) have no
-            // example.
-            let exempt = info.code.starts_with("E06") || ["E0399", "E0507", "E0122", "E0123"].contains(&info.code);
+            // Faults, the project file, what is not built yet and what takes pages of text (too deep, too many errors,
+            // too large a chart) have no example.
+            let no_example = ["E0399", "E0507", "E0122", "E0123", "W0480"];
+            let exempt = info.code[1..].starts_with("06") || no_example.contains(&info.code);
             if !exempt {
                 wrong.push(format!("{}: no example", info.code));
             }

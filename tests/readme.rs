@@ -119,6 +119,31 @@ fn examples_give_their_traces() {
         ("interlock", "200", "Main.drive.left,Main.drive.right,Main.k1.closed,Main.k2.closed,Main.danger"),
         ("control_loop", "900", "Main.seconds,Main.setpoint,Main.temperature,Main.power,Main.load"),
         ("plant_states", "60", "Main.room.temp,Main.unit.state,Main.switch,Main.alarm"),
+        (
+            "dosing",
+            "240",
+            "Main.control.V1,Main.control.V2,Main.control.V3,Main.control.V4,Main.control.batches,Main.plant.temperature,\
+             Main.control2.V1,Main.control2.V2,Main.control2.V3,Main.control2.V4,Main.control2.batches,\
+             Main.plant2.temperature",
+        ),
+        (
+            "heat_drain",
+            "430",
+            "Main.heater,Main.drain,Main.agitator,Main.announce,Main.rounds,Main.Off.X,Main.Heating.T,Main.Draining.T",
+        ),
+        (
+            "mixer",
+            "420",
+            "Main.mixer.coarse,Main.mixer.fine,Main.mixer.agitator,Main.mixer.outlet,Main.mixer.water,Main.mixer.batches,\
+             Main.vessel.weight,Main.vessel.content",
+        ),
+        (
+            "safe_tank",
+            "320",
+            "Main.control.fill,Main.control.steam,Main.control.cooling,Main.control.drain,Main.control.shutOff,\
+             Main.control.horn,Main.control.lamp,Main.fill.open,Main.steam.open,Main.control.Automatic.X,\
+             Main.control.Protect.X,Main.control.sequence.Heating.X,Main.tank.level,Main.tank.temperature",
+        ),
     ] {
         let example = project_root().join("examples").join(name);
         let folder = tempfile::tempdir().expect("a folder");

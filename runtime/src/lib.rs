@@ -4,6 +4,7 @@
 //! knows no compiler crate and no engine: an engine is whatever implements [`engine::Engine`], a program is an
 //! [`image::Image`].
 
+mod charts;
 pub mod cli;
 mod clock;
 pub mod engine;

@@ -1,5 +1,6 @@
 //! Runs an application as the flags say; the result is the exit code of docs/cli.md.
 
+use crate::charts::Charts;
 use crate::cli::RunFlags;
 use crate::clock::Clock;
 use crate::engine::{Engine, Region};
@@ -78,6 +79,7 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
         interval_ns,
         retain,
         stats: flags.stats.as_ref().map(|_| Stats::new(&image.tasks)),
+        charts: Charts::new(image, &resolver),
         cycles: flags.cycles,
     };
     let end = scan.run();

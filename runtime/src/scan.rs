@@ -1,5 +1,6 @@
 //! The scan loop: inputs, execute, outputs.
 
+use crate::charts::Charts;
 use crate::clock::{Clock, Tick, monotonic_ns};
 use crate::engine::{Engine, Region};
 use crate::image::Image;
@@ -28,6 +29,7 @@ pub struct Scan<'a> {
     pub interval_ns: i64,
     pub retain: Option<Retain>,
     pub stats: Option<Stats>,
+    pub charts: Charts,
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
 }
@@ -58,6 +60,10 @@ impl Scan<'_> {
                     Err(e) if !e.is_empty() => End::Trace(e),
                     _ => End::Fault(number, task, cycle),
                 };
+            }
+            let news = self.charts.check(cycle, self.mem.as_mut_slice());
+            if !news.is_empty() {
+                eprint!("{news}");
             }
             if let Some(retain) = &mut self.retain {
                 retain.capture(self.mem.as_slice());

@@ -36,6 +36,8 @@ pub enum Command {
     Run(RunArgs),
     /// Find mistakes and explain them.
     Check(CheckArgs),
+    /// Draw a program: its charts as SVG.
+    Graph(GraphArgs),
     /// Explain a diagnostic code, a standard function or a standard function block.
     Explain {
         /// `E0301`, `LIMIT`, `TON`.
@@ -177,4 +179,30 @@ pub struct CheckArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub sources: SourceArgs,
+}
+
+/// `plcc graph`.
+#[derive(Debug, Args)]
+pub struct GraphArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    /// Draw the Sequential Function Charts.
+    #[arg(long)]
+    pub sfc: bool,
+    /// Only the chart of this POU, with those of its actions, or of one action (POU.ACTION).
+    #[arg(long, value_name = "NAME")]
+    pub pou: Option<String>,
+    /// The file to write; standard output without it.
+    #[arg(short, long, value_name = "chart.svg")]
+    pub output: Option<PathBuf>,
+    /// Mark the active steps of a cycle of this trace (columns Instance.Step.X).
+    #[arg(long, value_name = "run.csv")]
+    pub trace: Option<PathBuf>,
+    /// Which cycle of the trace.
+    #[arg(long, value_name = "N", requires = "trace")]
+    pub cycle: Option<u64>,
+    /// Whose steps, when the trace has several instances of the POU.
+    #[arg(long, value_name = "PATH", requires = "trace")]
+    pub instance: Option<String>,
 }

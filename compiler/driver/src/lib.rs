@@ -6,6 +6,7 @@ pub mod cli;
 mod engines;
 mod explain;
 mod failure;
+mod graph;
 mod image;
 mod link;
 mod new;
@@ -50,6 +51,7 @@ pub fn execute(cli: Cli) -> u8 {
         Command::Build(args) => build::build(&args, color),
         Command::Run(args) => run(&args, color),
         Command::Check(args) => check(&args.sources, color),
+        Command::Graph(args) => graph::graph(&args, color),
         Command::Explain { name } => explain::page(&name).map(|page| {
             print!("{page}");
             0

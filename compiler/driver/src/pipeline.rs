@@ -65,7 +65,9 @@ pub fn check(parsed: &mut Parsed, project: &Project) -> Checked {
         .iter()
         .map(|(file, profile, builtin, ast)| Unit { file: *file, ast, profile: *profile, builtin: *builtin })
         .collect();
-    plcc_hir::check(&units, &project.selection, &mut parsed.diags)
+    let checked = plcc_hir::check(&units, &project.selection, &mut parsed.diags);
+    plcc_hir::chart_structure::check(&checked.defs, &mut parsed.diags);
+    checked
 }
 
 /// layout, lower, verify, optimise, image: the typed form to MIR and what the runtime needs.

@@ -15,12 +15,19 @@ use plcc_syntax::ast;
 
 /// Fields of the structure of a step, by their index.
 pub(crate) mod field {
+    use plcc_stdlib::elem::Elem;
+
     /// Active.
     pub const X: u32 = 0;
+    /// It was activated while it was active: the runtime looks for this name.
+    pub const TWICE: u32 = 1;
     /// For how long.
-    pub const T: u32 = 1;
+    pub const T: u32 = 2;
     /// The clock of the call that activated it.
-    pub const START: u32 = 2;
+    pub const START: u32 = 3;
+    /// Their names and types. Names that users cannot write are hidden in traces.
+    pub const ALL: [(&str, Elem); 4] =
+        [("X", Elem::Bool), ("$twice", Elem::Bool), ("T", Elem::Time), ("$start", Elem::Time)];
 }
 
 /// Options of the charts of a POU (\[F5\]).
@@ -72,12 +79,15 @@ fn declare_step<'a>(cx: &mut Cx<'a>, owner: PouId, step: &'a ast::Step) {
     }
     cx.defs.pous[owner].vars.push(var);
     cx.pou_slots[owner].scope.insert(key, Local::Var(var));
+    // A step is used by being there.
+    cx.mentioned.borrow_mut().insert(var);
     cx.steps.insert(step, var);
 }
 
 fn step_type(cx: &mut Cx, span: Span) -> crate::types::TypeId {
-    let make = |name: &str, elem| Field { name: name.into(), ty: Types::elem(elem), init: Init::Default, span };
-    let fields = vec![make("X", Elem::Bool), make("T", Elem::Time), make("$start", Elem::Time)];
+    let make =
+        |(name, elem): (&str, Elem)| Field { name: name.into(), ty: Types::elem(elem), init: Init::Default, span };
+    let fields = field::ALL.into_iter().map(make).collect();
     let id = cx.defs.structs.push(StructDef { name: "STEP".into(), union: false, fields, span });
     let ty = cx.defs.types.intern(Type::Struct(id));
     cx.step_type = Some(ty);

@@ -2,6 +2,7 @@
 //! `stdlib/blocks/ACTION_CONTROL.st`; here are the instances, who feeds them, and when they may rest.
 
 use super::emit::*;
+use super::groups::{Group, Grouped, Groups};
 use crate::body::{Callee, Expr, Place, Stmt};
 use crate::chart::{ActionId, ActionKind, Association, Chart, Qualifier, StepId};
 use crate::defs::Profile;
@@ -9,7 +10,7 @@ use crate::types::Types;
 use plcc_diag::Span;
 
 /// The statements of steps (2) and (3) of the evolution (\[F2\]).
-pub(super) fn write(w: &mut Writer, chart: &Chart, out: &mut Vec<Stmt>) {
+pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, out: &mut Vec<Stmt>) {
     let mut users: Vec<Vec<User>> = chart.actions.iter().map(|_| Vec::new()).collect();
     for (step, s) in chart.steps.iter_enumerated() {
         for association in &s.associations {
@@ -17,15 +18,17 @@ pub(super) fn write(w: &mut Writer, chart: &Chart, out: &mut Vec<Stmt>) {
         }
     }
     let mut running = Vec::new();
+    let mut controls = Grouped::default();
     for (id, users) in chart.actions.indices().zip(&users) {
-        running.push(control(w, chart, id, users, out));
+        running.push(control(w, chart, id, users, groups, &mut controls));
     }
+    controls.finish(groups, out);
     for (action, running) in chart.actions.iter().zip(&running) {
         if let ActionKind::Variable(place) = &action.kind {
             out.push(assign(place.clone(), running.clone(), place.span));
         }
     }
-    bodies(w, chart, &users, &running, out);
+    bodies(w, chart, &users, &running, groups, out);
 }
 
 /// A step that acts on the action in question.
@@ -35,7 +38,7 @@ struct User<'c> {
 }
 
 /// Decides whether an action runs; gives the expression that says so.
-fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], out: &mut Vec<Stmt>) -> Expr {
+fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], groups: &Groups, out: &mut Grouped) -> Expr {
     let span = span_of(chart, users);
     let flags = |q: Qualifier| -> Vec<Expr> {
         users.iter().filter(|u| u.association.qualifier == q).map(|u| active(chart, u.step)).collect()
@@ -71,7 +74,8 @@ fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], out: &mu
     }
     body.push(w.call(&control, inputs, span));
     // It rests while none of its steps is active, nothing is stored, and the last scan has seen that: then no part of it
-    // would change.
+    // would change. Until then it keeps the group of its steps awake, if they are of one.
+    let group = group_of(groups, users);
     let awake = variable(w.hidden(&format!("{name}awake"), Types::elem(BOOL), span), Types::elem(BOOL), span);
     let steps: Vec<Expr> = users.iter().map(|u| active(chart, u.step)).collect();
     let runs = w.output(&control, "Q");
@@ -79,10 +83,20 @@ fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], out: &mu
     why.push(runs.clone());
     why.append(&mut stored);
     body.push(assign(awake.clone(), any(&why, span), span));
+    if group.is_some() {
+        let mut wake = Vec::new();
+        groups.wake(group, span, &mut wake);
+        body.push(when(read(awake.clone()), wake, span));
+    }
     let mut needed = steps;
     needed.push(read(awake));
-    out.push(when(any(&needed, span), body, span));
+    out.push(group, [when(any(&needed, span), body, span)]);
     runs
+}
+
+/// The group of all steps that act on an action.
+fn group_of(groups: &Groups, users: &[User]) -> Group {
+    groups.common(users.iter().map(|u| u.step))
 }
 
 /// The part of the action control that a qualifier needs for itself.
@@ -100,27 +114,27 @@ fn part(qualifier: Qualifier) -> Option<&'static str> {
 }
 
 /// Calls the bodies of active actions, in profile codesys first once more those that ran and do not any more (\[F10\]).
-fn bodies(w: &mut Writer, chart: &Chart, users: &[Vec<User>], running: &[Expr], out: &mut Vec<Stmt>) {
+fn bodies(w: &mut Writer, chart: &Chart, users: &[Vec<User>], running: &[Expr], groups: &Groups, out: &mut Vec<Stmt>) {
     let final_scan = w.c.cx.defs.pous[w.owner].profile == Profile::Codesys;
-    let mut last = Vec::new();
-    let mut now = Vec::new();
+    let (mut last, mut now) = (Grouped::default(), Grouped::default());
     for (id, action) in chart.actions.iter_enumerated() {
         let ActionKind::Block(block) = action.kind else { continue };
-        let span = span_of(chart, &users[id.index()]);
+        let users = &users[id.index()];
+        let (span, group) = (span_of(chart, users), group_of(groups, users));
         let run = || call(Callee::Action(None, block), Vec::new(), span);
         let running = &running[id.index()];
         if !final_scan {
-            now.push(when(running.clone(), vec![run()], span));
+            now.push(group, [when(running.clone(), vec![run()], span)]);
             continue;
         }
         let name = format!("a{}ran", id.index() + 1);
         let ran: Place = variable(w.hidden(&name, Types::elem(BOOL), span), Types::elem(BOOL), span);
         let ended = all(&[read(ran.clone()), not(running.clone())], span);
-        last.push(when(ended, vec![assign(ran.clone(), constant(0, BOOL, span), span), run()], span));
-        now.push(when(running.clone(), vec![assign(ran, constant(1, BOOL, span), span), run()], span));
+        last.push(group, [when(ended, vec![assign(ran.clone(), constant(0, BOOL, span), span), run()], span)]);
+        now.push(group, [when(running.clone(), vec![assign(ran, constant(1, BOOL, span), span), run()], span)]);
     }
-    out.append(&mut last);
-    out.append(&mut now);
+    last.finish(groups, out);
+    now.finish(groups, out);
 }
 
 /// Where an action is named first.

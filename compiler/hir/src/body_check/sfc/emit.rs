@@ -88,7 +88,7 @@ pub(super) fn variable(var: VarId, ty: TypeId, span: Span) -> Place {
 /// A part of a step.
 pub(super) fn of_step(chart: &Chart, step: StepId, part: u32) -> Place {
     let step = &chart.steps[step];
-    let elem = if part == field::X { BOOL } else { Elem::Time };
+    let (_, elem) = field::ALL[part as usize];
     Place { root: Root::Var(step.var), steps: vec![Step::Field(part)], ty: Types::elem(elem), span: step.span }
 }
 

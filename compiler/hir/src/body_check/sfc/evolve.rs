@@ -2,6 +2,7 @@
 //! Steps (4), (5) and (6) of the evolution (semantics.md \[F2\]).
 
 use super::emit::*;
+use super::groups::{Grouped, Groups};
 use crate::body::{Expr, Place, Stmt, TempId};
 use crate::chart::{Chart, Firing, StepId, TransitionId, Trigger};
 use crate::collect::charts::field;
@@ -21,10 +22,13 @@ pub(super) struct State {
     pub chosen: IndexVec<TransitionId, Place>,
     /// With [`Trigger::Edge`]: the number of this call, and by transition the number of the call in which a TRUE counts.
     pub edges: Option<(Place, IndexVec<TransitionId, Place>)>,
+    /// A step was activated while it was active; the runtime takes it back. `None` where that cannot be.
+    pub merged: Option<Place>,
 }
 
 /// Steps (4) and (5).
-pub(super) fn evaluate(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
+pub(super) fn evaluate(w: &mut Writer, chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<Stmt>) {
+    let mut grouped = Grouped::default();
     for set in chart.choices() {
         // While a step that all of them take is not active, none is possible.
         let transitions = || set.iter().map(|t| &chart.transitions[*t]);
@@ -36,10 +40,13 @@ pub(super) fn evaluate(w: &mut Writer, chart: &Chart, state: &State, out: &mut V
         }
         choose(chart, state, &set, &mut body);
         match (shared, first) {
-            (Some(step), Some(first)) => out.push(when(active(chart, step), body, first.span)),
-            _ => out.append(&mut body),
+            (Some(step), Some(first)) => {
+                grouped.push(groups.of(step), [when(active(chart, step), body, first.span)]);
+            }
+            _ => grouped.push(None, body),
         }
     }
+    grouped.finish(groups, out);
 }
 
 /// (4) Evaluates a condition if all preceding steps are active: `chosen` then says whether it counts. The step `known` is
@@ -116,27 +123,36 @@ fn narrow(state: &State, id: TransitionId, also: Expr, span: Span, out: &mut Vec
 }
 
 /// (6) Clears all preceding steps of the chosen transitions, then sets all succeeding ones.
-pub(super) fn fire(chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
-    let mut body = Vec::new();
+pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<Stmt>) {
+    let (mut clear, mut set) = (Grouped::default(), Grouped::default());
     for (id, transition) in chart.transitions.iter_enumerated() {
         let span = transition.span;
-        let clear = transition.from.iter().map(|s| assign(of_step(chart, *s, field::X), constant(0, BOOL, span), span));
-        body.push(when(read(state.chosen[id].clone()), clear.collect(), span));
-    }
-    for (id, transition) in chart.transitions.iter_enumerated() {
-        let span = transition.span;
-        let mut set = vec![assign(state.chosen[id].clone(), constant(0, BOOL, span), span)];
+        // What is chosen, has active steps: the group of any of them is awake.
+        let group = transition.from.first().and_then(|s| groups.of(*s));
+        let chosen = || read(state.chosen[id].clone());
+        let off = transition.from.iter().map(|s| assign(of_step(chart, *s, field::X), constant(0, BOOL, span), span));
+        clear.push(group, [when(chosen(), off.collect(), span)]);
+        let mut on = vec![assign(state.chosen[id].clone(), constant(0, BOOL, span), span)];
         for step in &transition.to {
-            activate(chart, state, *step, span, &mut set);
+            activate(chart, state, *step, span, &mut on);
+            groups.wake(groups.of(*step), span, &mut on);
         }
-        body.push(when(read(state.chosen[id].clone()), set, span));
+        set.push(group, [when(chosen(), on, span)]);
     }
+    let mut body = Vec::new();
+    clear.finish(groups, &mut body);
+    set.finish(groups, &mut body);
     let span = chart.span.before();
     out.push(when(read_temp(state.fires, BOOL, span), body, span));
 }
 
 /// A step becomes active: its time starts (\[F6\]).
 fn activate(chart: &Chart, state: &State, step: StepId, span: Span, out: &mut Vec<Stmt>) {
+    if let Some(merged) = &state.merged {
+        let yes = || constant(1, BOOL, span);
+        let tell = vec![assign(of_step(chart, step, field::TWICE), yes(), span), assign(merged.clone(), yes(), span)];
+        out.push(when(active(chart, step), tell, span));
+    }
     out.push(assign(of_step(chart, step, field::X), constant(1, BOOL, span), span));
     out.push(assign(of_step(chart, step, field::T), constant(0, Elem::Time, span), span));
     out.push(assign(of_step(chart, step, field::START), read_temp(state.now, Elem::Time, span), span));
@@ -156,7 +172,13 @@ pub(super) fn state(w: &mut Writer, chart: &Chart) -> State {
         let ty = Types::elem(Elem::Lint);
         (variable(w.hidden("calls", ty, chart.span), ty, chart.span.before()), due)
     });
-    State { now, fires, chosen, edges }
+    // Where every transition leads from one step to one, each network has one active step for ever.
+    let sequential = chart.transitions.iter().all(|t| t.from.len() == 1 && t.to.len() == 1);
+    let merged = (!sequential).then(|| {
+        let ty = Types::elem(BOOL);
+        variable(w.hidden("merged", ty, chart.span), ty, chart.span.before())
+    });
+    State { now, fires, chosen, edges, merged }
 }
 
 /// What comes before step (1): in the first call the time of the initial steps starts (\[F6\]); after a call that did not come
@@ -186,11 +208,22 @@ pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<
 }
 
 /// (1) Refreshes the times of active steps.
-pub(super) fn times(chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
+pub(super) fn times(chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<Stmt>) {
+    let mut grouped = Grouped::default();
+    let mut last = None;
     for (id, step) in chart.steps.iter_enumerated() {
-        let span = step.span;
+        let (span, group) = (step.span, groups.of(id));
+        let mut stmts = Vec::new();
+        if last != group {
+            groups.tire(group, span, &mut stmts);
+            last = group;
+        }
         let now = read_temp(state.now, Elem::Time, span);
         let since = operation(Op::Sub, Elem::Time, vec![now, read(of_step(chart, id, field::START))], span);
-        out.push(when(active(chart, id), vec![assign(of_step(chart, id, field::T), since, span)], span));
+        let mut refresh = vec![assign(of_step(chart, id, field::T), since, span)];
+        groups.wake(group, span, &mut refresh);
+        stmts.push(when(active(chart, id), refresh, span));
+        grouped.push(group, stmts);
     }
+    grouped.finish(groups, out);
 }

@@ -18,8 +18,9 @@
 //! `stdlib/blocks/ACTION_CONTROL.st`. Nothing after this knows that there was a chart.
 //!
 //! # What it costs
-//! Per call one test of a flag for each step and for each set of rival transitions, and one test for each action; all else
-//! happens for active steps only. Setting and clearing is looked at only in calls in which something fires.
+//! Per call one test of a flag for each step and for each set of rival transitions, one test for each action, and one store
+//! for each BOOL action; all else happens for active steps only. Setting and clearing is looked at only in calls in which
+//! something fires. In charts with many steps the tests are done for groups of steps first (`groups`).
 //!
 //! In: the tree of the chart. Out: a [`Body`], and the [`Chart`](crate::chart::Chart) in `Defs`. `build` and `actions` resolve
 //! and report; `control` and `evolve` write statements, from the pieces in `emit`.
@@ -29,6 +30,7 @@ mod build;
 mod control;
 mod emit;
 mod evolve;
+mod groups;
 
 use crate::body::Body;
 use crate::chart::Condition;
@@ -59,10 +61,11 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, pou: PouId, scope: PouId, body: &'a ast
     let mut stmts = Vec::new();
     let state = evolve::state(&mut w, &chart);
     let unfinished = evolve::begin(&mut w, &chart, &state, &mut stmts);
-    evolve::times(&chart, &state, &mut stmts);
-    control::write(&mut w, &chart, &mut stmts);
-    evolve::evaluate(&mut w, &chart, &state, &mut stmts);
-    evolve::fire(&chart, &state, &mut stmts);
+    let groups = groups::Groups::new(&mut w, &chart);
+    evolve::times(&chart, &state, &groups, &mut stmts);
+    control::write(&mut w, &chart, &groups, &mut stmts);
+    evolve::evaluate(&mut w, &chart, &state, &groups, &mut stmts);
+    evolve::fire(&chart, &state, &groups, &mut stmts);
     stmts.push(assign(unfinished, constant(0, BOOL, chart.span), chart.span.before()));
     let temps = checker.temps;
     cx.defs.charts.push(chart);

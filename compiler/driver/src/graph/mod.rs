@@ -1,0 +1,176 @@
+//! `plcc graph FILE --sfc`: charts as SVG.
+//!
+//! `chart` is what is drawn, `tree` its shape, `layout` places it, `svg` writes it; `trace` knows the active steps of a cycle.
+//! Charts are taken from the syntax tree and texts from the source, so a chart is drawn as it is written, and also while
+//! other parts of the program are still wrong.
+
+mod chart;
+mod layout;
+mod picture;
+mod svg;
+#[cfg(test)]
+mod tests;
+mod trace;
+mod tree;
+
+use crate::cli::GraphArgs;
+use crate::failure::Failure;
+use crate::pipeline::{self, Parsed};
+use chart::{Action, Chart, Step, Transition};
+use picture::{Picture, Rect, Shape};
+use plcc_diag::{SourceMap, Span};
+use plcc_syntax::ast;
+
+/// Draws what the command line says.
+pub fn graph(args: &GraphArgs, color: crate::cli::Color) -> Result<u8, Failure> {
+    if !args.sfc {
+        return Err(Failure::usage("say what to draw: --sfc draws the charts"));
+    }
+    let (_, sources, ids) = pipeline::load(&args.sources)?;
+    let parsed = pipeline::parse(sources, &ids);
+    crate::report(&parsed, None, args.sources.message_format, color)?;
+    let mut charts = charts(&parsed)?;
+    if let Some(wanted) = &args.pou {
+        let names: Vec<String> = charts.iter().map(|c| c.name.clone()).collect();
+        charts.retain(|c| c.name.eq_ignore_ascii_case(wanted) || c.pou.eq_ignore_ascii_case(wanted));
+        if charts.is_empty() {
+            let near = plcc_hir::similar(wanted, names.iter().map(String::as_str));
+            let near = near.map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
+            return Err(Failure::usage(format!("--pou: there is no chart `{wanted}`{near}")));
+        }
+    }
+    if charts.is_empty() {
+        return Err(Failure::usage("there is no Sequential Function Chart in the sources"));
+    }
+    let mut cycle = None;
+    if let Some(path) = &args.trace {
+        let number = args.cycle.ok_or_else(|| Failure::usage("--trace needs --cycle N: which row to show"))?;
+        let row = trace::Row::read(path, number)?;
+        for chart in &mut charts {
+            row.mark(chart, args.instance.as_deref())?;
+        }
+        cycle = Some(number);
+    }
+    let text = svg::write(&sheet(&charts, cycle));
+    write(&text, args.output.as_deref())?;
+    Ok(0)
+}
+
+fn write(text: &str, output: Option<&std::path::Path>) -> Result<(), Failure> {
+    let Some(path) = output.filter(|path| *path != std::path::Path::new("-")) else {
+        use std::io::Write;
+        return match std::io::stdout().lock().write_all(text.as_bytes()) {
+            Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+                Err(Failure::device(format!("cannot write to standard output: {e}")))
+            }
+            _ => Ok(()),
+        };
+    };
+    std::fs::write(path, text).map_err(|e| Failure::io("write", path, e))
+}
+
+/// A chart with its names.
+struct Named {
+    /// `Main`, or `Main.Act` for an action.
+    name: String,
+    /// The POU that keeps its steps.
+    pou: String,
+    chart: Chart,
+}
+
+/// All charts of the user's files, in the order of the text.
+fn charts(parsed: &Parsed) -> Result<Vec<Named>, Failure> {
+    let mut found = Vec::new();
+    for (_, _, builtin, file) in &parsed.files {
+        for item in &file.items {
+            let ast::Item::Pou(pou) = item else { continue };
+            if *builtin {
+                continue;
+            }
+            let mut add = |name: String, body: &ast::Body| -> Result<(), Failure> {
+                let ast::Body::Sfc(sfc) = body else { return Ok(()) };
+                let chart = read(sfc, &parsed.sources)?;
+                found.push(Named { name, pou: pou.name.text.to_string(), chart });
+                Ok(())
+            };
+            add(pou.name.text.to_string(), &pou.body)?;
+            for action in &pou.actions {
+                add(format!("{}.{}", pou.name.text, action.name.text), &action.body)?;
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
+    let mut chart = Chart::default();
+    let text = |span: Span| sources.text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+    for element in &body.elements {
+        let ast::SfcElement::Step(step) = element else { continue };
+        let action = |a: &ast::ActionAssociation| Action {
+            qualifier: a.qualifier.as_ref().map_or("N".into(), |q| q.text.to_uppercase()),
+            name: text(a.action.span),
+            time: a.time.as_ref().map(|t| text(t.span)).unwrap_or_default(),
+            indicator: a.indicators.iter().map(|i| text(i.span)).collect::<Vec<_>>().join(", "),
+        };
+        chart.steps.push(Step {
+            name: step.name.text.to_string(),
+            initial: step.initial,
+            active: false,
+            actions: step.actions.iter().map(action).collect(),
+        });
+    }
+    for element in &body.elements {
+        let ast::SfcElement::Transition(transition) = element else { continue };
+        let steps = |names: &[ast::Name]| {
+            let mut steps = Vec::new();
+            for name in names {
+                let Some(step) = chart.steps.iter().position(|s| s.name.eq_ignore_ascii_case(&name.text)) else {
+                    let place = sources.position(name.span);
+                    let message = format!("{place}: there is no step `{}`; `plcc check` says more", name.text);
+                    return Err(Failure { code: 1, message });
+                };
+                steps.push(step);
+            }
+            steps.dedup();
+            Ok(steps)
+        };
+        chart.transitions.push(Transition {
+            name: transition.name.as_ref().map(|n| n.text.to_string()),
+            priority: transition.priority.as_ref().map(|p| text(p.span)),
+            condition: match &transition.condition {
+                ast::Condition::St(e) => text(e.span),
+                ast::Condition::Il(il) => sources.text(il.span).trim().to_string(),
+            },
+            from: steps(&transition.from)?,
+            to: steps(&transition.to)?,
+        });
+    }
+    Ok(chart)
+}
+
+/// All charts below each other, with headings where there are several or a cycle is shown.
+fn sheet(charts: &[Named], cycle: Option<u64>) -> Picture {
+    const HEADING: i32 = 32;
+    let mut sheet = Picture::default();
+    for named in charts {
+        let mut picture = layout::place(&named.chart);
+        let title = match cycle {
+            Some(cycle) => Some(format!("{}, cycle {cycle}", named.name)),
+            None if charts.len() > 1 => Some(named.name.clone()),
+            None => None,
+        };
+        if let Some(text) = title {
+            let right = 24 + layout::width(&text) * 6 / 5;
+            let rect = Rect { left: 24, top: sheet.height + 8, right, bottom: sheet.height + HEADING };
+            sheet.shapes.push(Shape::Title { rect, text });
+            sheet.height += HEADING;
+            sheet.width = sheet.width.max(right + 24);
+        }
+        picture.shapes.iter_mut().for_each(|s| s.shift(0, sheet.height));
+        sheet.height += picture.height;
+        sheet.width = sheet.width.max(picture.width);
+        sheet.shapes.extend(picture.shapes);
+    }
+    sheet
+}

@@ -1,0 +1,63 @@
+//! Tells when a step of a chart was activated while it was active: two tokens became one (semantics.md \[G2\], what the
+//! structure analysis could not exclude).
+//!
+//! The compiled chart raises a hidden flag in the step and one in its instance. Here they are looked at after each cycle, the
+//! ones of the instances first, and taken back. Each step is told once: what happens again is no news.
+
+use crate::image::{Image, TypeDesc};
+use crate::path::Resolver;
+
+/// The hidden field of a step that was activated twice.
+const STEP: &str = ".$twice";
+/// The hidden variable of an instance whose chart has such a step; charts of ACTIONs have the action's name in front.
+const CHART: &str = "$merged";
+
+/// The flags of all charts.
+#[derive(Debug, Default)]
+pub struct Charts {
+    /// Flags of charts.
+    raised: Vec<usize>,
+    /// Flags of steps and the names of the steps; those that were told are taken out.
+    steps: Vec<(usize, String)>,
+}
+
+impl Charts {
+    /// Finds the flags.
+    pub fn new(image: &Image, resolver: &Resolver) -> Self {
+        let mut charts = Self::default();
+        let step =
+            |ty: &TypeDesc| matches!(ty, TypeDesc::Struct { fields, .. } if fields.iter().any(|f| f.name == STEP[1..]));
+        if !image.types.iter().any(step) {
+            return charts;
+        }
+        for (name, leaf) in resolver.every_leaf().unwrap_or_default() {
+            if let Some(step) = name.strip_suffix(STEP) {
+                charts.steps.push((leaf.offset as usize, step.to_string()));
+            } else if name.ends_with(CHART) {
+                charts.raised.push(leaf.offset as usize);
+            }
+        }
+        charts
+    }
+
+    /// Messages about steps that were activated twice in this cycle for the first time.
+    pub fn check(&mut self, cycle: u64, memory: &mut [u8]) -> String {
+        let mut any = false;
+        for &flag in &self.raised {
+            any |= std::mem::replace(&mut memory[flag], 0) != 0;
+        }
+        let mut text = String::new();
+        if !any {
+            return text;
+        }
+        self.steps.retain(|(flag, name)| {
+            if memory[*flag] == 0 {
+                return true;
+            }
+            text +=
+                &format!("warning[W0609]: a step was activated while it was active\n  step {name}\n  cycle {cycle}\n");
+            false
+        });
+        text
+    }
+}
