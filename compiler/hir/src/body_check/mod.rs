@@ -1,5 +1,6 @@
 //! Bodies to [`Body`](crate::body::Body): one module per notation.
 
+pub(crate) mod il;
 pub(crate) mod sfc;
 mod st;
 
@@ -36,7 +37,7 @@ fn check<'a>(cx: &mut Cx<'a>, id: PouId, body: &'a ast::Body) -> Body {
     };
     match body {
         ast::Body::St(stmts) => st::check(cx, scope, stmts),
-        ast::Body::Il(il) => not_yet(cx, il.span.before(), "Instruction List"),
+        ast::Body::Il(body) => il::check(cx, scope, body),
         ast::Body::Sfc(chart) => sfc::check(cx, id, scope, chart),
     }
 }
