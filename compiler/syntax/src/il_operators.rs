@@ -217,6 +217,9 @@ pub const OPERATORS: &[Operator] = &[
     ret("RETCN", When::False, "Leaves the POU if the current result, a BOOL, is FALSE."),
 ];
 
+/// Where the standard has the input operators.
+pub const INPUT_CLAUSE: &str = "Ed. 2 table 54";
+
 /// Input operators (semantics.md \[I2\]). `S`, `R` and `LD` are also operators of their own: the operand decides.
 pub const INPUT_OPERATORS: &[InputOperator] = &[
     InputOperator { name: "S1", of: "SR" },

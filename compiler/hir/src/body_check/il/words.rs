@@ -45,7 +45,8 @@ impl Il<'_, '_, '_> {
         let joint = sides.cr.0.to(line.span);
         for mut d in self.c.cx.diags.split_off(first) {
             let at = d.primary.span;
-            let wrong = d.code == codes::WRONG_OPERAND || d.code == codes::TYPE_MISMATCH;
+            let lax = d.code == codes::LAX_CONVERSION;
+            let wrong = lax || d.code == codes::WRONG_OPERAND || d.code == codes::TYPE_MISMATCH;
             let about_operand = sides.other.as_ref().is_some_and(|o| o.0 == at);
             // Operations of the current result lie in its instructions, above this line.
             let about_cr = !about_operand && at != line.span && at != joint && within(at, sides.cr.0);
@@ -65,7 +66,7 @@ impl Il<'_, '_, '_> {
                     None => format!("the current result is {cr} here; {name} needs {needs}"),
                 };
                 if !about_operand {
-                    d.code = codes::CR_TYPE;
+                    d.code = if lax { d.code } else { codes::CR_TYPE };
                     d.secondary.clear();
                     d.secondary.push(plcc_diag::Label { span: sides.cr.0, text: format!("it is {cr} from here") });
                 }
