@@ -12,6 +12,7 @@ use crate::types::Types;
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::funcs::{Meaning, StdFn};
 use plcc_syntax::ast;
+use plcc_syntax::ast::print::print_expr;
 use plcc_syntax::il_operators::When;
 
 impl<'a> Il<'_, '_, 'a> {
@@ -46,7 +47,7 @@ impl<'a> Il<'_, '_, 'a> {
                 self.c.user_call(target, pou, Arguments { first: None, args, at: callee.span }, line.span)
             }
             Target::User(..) | Target::Standard(_) | Target::Special(_) => {
-                let text = plcc_syntax::ast::print::print_expr(callee);
+                let text = print_expr(callee);
                 self.c.report(
                     Diagnostic::new(codes::NOT_CALLABLE, callee.span, format!("`{text}` is a function"))
                         .help(format!("a function is an operator itself: `LD x`, then `{text}`; CAL calls instances")),
@@ -151,7 +152,7 @@ impl<'a> Il<'_, '_, 'a> {
             let help = match (taken, args.len()) {
                 (1, n) if n == func.min_args() => {
                     let text = match &args[0].kind {
-                        ast::ArgKind::Positional(e) => plcc_syntax::ast::print::print_expr(e),
+                        ast::ArgKind::Positional(e) => print_expr(e),
                         _ => "x".to_string(),
                     };
                     format!("the current result is the first argument: write `LD {text}` before it")

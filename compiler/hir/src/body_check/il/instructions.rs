@@ -58,7 +58,11 @@ impl<'a> Il<'_, '_, 'a> {
     pub fn enter_label(&mut self, label: usize, at: Span) {
         self.drop_unreachable();
         if self.reachable {
-            self.bring(label, self.labels[label].at);
+            let from = match &self.cr {
+                Current::Value(value) => value.span,
+                _ => self.labels[label].at,
+            };
+            self.bring(label, from);
             if !self.labels[label].live {
                 self.drop_current(at);
             }

@@ -8,6 +8,7 @@ use crate::expr::Checker;
 use crate::types::TypeId;
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::funcs::StdFn;
+use plcc_syntax::ast::print::print_expr;
 use plcc_syntax::ast::{self, BinaryOp, ExprKind};
 use plcc_syntax::il_operators::{self, Meaning, Operator, When};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -357,16 +358,16 @@ impl<'a> Reader<'_, '_, 'a> {
                 return What::Bad;
             }
             (_, [operand]) => operand,
-            (_, [_, second, ..]) => {
+            (_, [first, second, ..]) => {
                 let message = format!("{} takes one operand", operator.name);
-                self.c.report(Diagnostic::new(codes::TOO_MANY_OPERANDS, second.span, message).help(
-                    match operator.meaning {
-                        Meaning::Binary { .. } => {
-                            format!("the current result is its other one: write `LD a`, then `{} b`", operator.name)
-                        }
-                        _ => "write one instruction per line".to_string(),
-                    },
-                ));
+                let help = match (operator.meaning, positional(first), positional(second)) {
+                    (Meaning::Binary { .. }, Some(a), Some(b)) => {
+                        let (a, b) = (print_expr(a), print_expr(b));
+                        format!("the current result is its other one: write `LD {a}`, then `{} {b}`", operator.name)
+                    }
+                    _ => "write one instruction per line".to_string(),
+                };
+                self.c.report(Diagnostic::new(codes::TOO_MANY_OPERANDS, second.span, message).help(help));
                 return What::Bad;
             }
         };
@@ -582,7 +583,7 @@ fn warn_of_stn(c: &mut Checker, lines: &[Line]) {
         let What::Store { negated: true, operand, .. } = &line.what else { continue };
         let beside = lines[group.clone()].iter().find(|l| matches!(l.what, What::Set { .. })).map(|l| l.span);
         let Some(other) = set.get(&text_of(operand)).copied().or(beside) else { continue };
-        let name = plcc_syntax::ast::print::print_expr(operand);
+        let name = print_expr(operand);
         c.report(
             Diagnostic::new(
                 codes::STN_FOR_RESET,
@@ -596,5 +597,5 @@ fn warn_of_stn(c: &mut Checker, lines: &[Line]) {
 }
 
 fn text_of(operand: &ast::Expr) -> String {
-    plcc_syntax::ast::print::print_expr(operand).to_ascii_uppercase()
+    print_expr(operand).to_ascii_uppercase()
 }
