@@ -3,6 +3,7 @@
 use plcc_diag::{Diagnostics, SourceMap};
 use plcc_hir::{Checked, Profile, Selection, Unit};
 use plcc_mir::ir::Program;
+use plcc_mir::layout::Layout;
 use plcc_mir::lower::Checks;
 
 /// Messages of errors, one line each.
@@ -39,10 +40,14 @@ pub fn diagnose(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMa
 
 /// A source with one PROGRAM or a CONFIGURATION to verified MIR.
 pub fn compile(text: &str, profile: Profile) -> Result<Program, String> {
-    let checked = check(text, profile)?;
+    lower(&check(text, profile)?).map(|(program, _)| program)
+}
+
+/// A checked source to verified MIR and its layout.
+pub fn lower(checked: &Checked) -> Result<(Program, Layout), String> {
     let app = checked.app.as_ref().ok_or("there is no PROGRAM")?;
-    let (program, _) =
+    let (program, layout) =
         plcc_mir::lower::lower(&checked.defs, app, 0, Checks::ALL, false).map_err(|e| format!("{e:?}"))?;
     let problems = plcc_mir::verify::verify(&program);
-    if problems.is_empty() { Ok(program) } else { Err(format!("verifier: {problems:?}")) }
+    if problems.is_empty() { Ok((program, layout)) } else { Err(format!("verifier: {problems:?}")) }
 }
