@@ -34,7 +34,8 @@ impl Blocks<'_, '_> {
         let operator = is_operator(word.text(self.text)) || word.kind == Tok::Op;
         let alone = next.first || Construct::closed_by(next.kind).is_some();
         match next.kind {
-            _ if alone => operator,
+            // A function without operands: the next line tells.
+            _ if alone => operator || word.kind == Tok::Id && self.operator_at(i + 1),
             Tok::LParen => {
                 let Some(end) = self.closing_paren(i + 1) else { return false };
                 let after = self.peek(end + 1);

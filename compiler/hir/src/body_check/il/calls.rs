@@ -5,7 +5,7 @@ use super::current::{Current, Touches, Value};
 use super::lines::Line;
 use crate::body::*;
 use crate::call::{Arguments, Target};
-use crate::defs::{PouKind, VarId};
+use crate::defs::{PouKind, Section, VarId};
 use crate::expr::Operand;
 use crate::std_call::wanted_of_argument;
 use crate::types::Types;
@@ -83,8 +83,13 @@ impl<'a> Il<'_, '_, 'a> {
 
     /// A function by its name; the current result is its first argument.
     pub fn function(&mut self, line: &Line<'a>, name: &'a ast::Name, args: &'a [ast::Arg], takes: bool) {
+        if takes && self.brings_all(name, args) {
+            self.drop_current(line.span);
+            self.cr = Current::Unknown;
+            return;
+        }
         let first = match takes {
-            true => self.take(line.span, &line.name),
+            true => self.take(line.span, &name.text),
             false => {
                 self.drop_current(line.span);
                 None
@@ -111,6 +116,34 @@ impl<'a> Il<'_, '_, 'a> {
             Target::Special(_) | Target::Reported => Operand::Error,
         };
         self.set_result(result, span, operations, line.span);
+    }
+
+    /// `INT_TO_REAL i`: all arguments stand behind the name, as if the current result were none. Reports it.
+    fn brings_all(&mut self, name: &'a ast::Name, args: &'a [ast::Arg]) -> bool {
+        let trial = self.c.cx.trial();
+        let target = self.c.named_callee(name);
+        self.c.cx.undo(trial);
+        let parameters = match target {
+            Target::Standard(func) if func.param_type(func.min_args()).is_none() => func.min_args(),
+            Target::User(_, pou) => {
+                let vars = self.c.cx.defs.pous[pou].vars.iter().map(|v| self.c.cx.defs.vars[*v].section);
+                vars.filter(|s| matches!(s, Section::Input | Section::InOut)).count()
+            }
+            _ => return false,
+        };
+        let Some(ast::ArgKind::Positional(first)) = args.first().map(|a| &a.kind) else { return false };
+        if args.len() != parameters {
+            return false;
+        }
+        let rest: Vec<String> = args[1..].iter().map(|a| print_arg(a)).collect();
+        let rest = if rest.is_empty() { String::new() } else { format!(" {}", rest.join(", ")) };
+        let message = format!("{} arguments for {}, the current result among them", args.len() + 1, name.text);
+        self.c.report(Diagnostic::new(codes::TOO_MANY_ARGUMENTS, first.span, message).help(format!(
+            "the current result is the first argument: write `LD {}`, then `{}{rest}`",
+            print_expr(first),
+            name.text
+        )));
+        true
     }
 
     fn result_of(&mut self, call: Option<Call>, pou: crate::defs::PouId, span: Span) -> Operand {
@@ -149,16 +182,7 @@ impl<'a> Il<'_, '_, 'a> {
         if given > func.min_args() && func.param_type(given - 1).is_none() {
             let message = format!("{given} arguments for {}, the current result among them", func.name);
             let at = args.last().map_or(line.span, |a| a.span);
-            let help = match (taken, args.len()) {
-                (1, n) if n == func.min_args() => {
-                    let text = match &args[0].kind {
-                        ast::ArgKind::Positional(e) => print_expr(e),
-                        _ => "x".to_string(),
-                    };
-                    format!("the current result is the first argument: write `LD {text}` before it")
-                }
-                _ => format!("it is {}", func.signature()),
-            };
+            let help = format!("it is {}", func.signature());
             self.c.report(Diagnostic::new(codes::TOO_MANY_ARGUMENTS, at, message).help(help));
             return Operand::Error;
         }
@@ -193,5 +217,12 @@ impl<'a> Il<'_, '_, 'a> {
         self.drop_current(line.span);
         let result = self.c.call_operand(call, line.span, line.want);
         self.set_result(result, line.span, 1 + call.args.len() as u32, line.span);
+    }
+}
+
+fn print_arg(arg: &ast::Arg) -> String {
+    match &arg.kind {
+        ast::ArgKind::Positional(e) => print_expr(e),
+        ast::ArgKind::Input(..) | ast::ArgKind::Output { .. } => String::new(),
     }
 }
