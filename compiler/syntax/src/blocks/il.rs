@@ -95,12 +95,13 @@ impl Blocks<'_, '_> {
                 return self.insert(Tok::Eol);
             }
         }
-        let mut deferred = false;
+        let (mut deferred, mut closes) = (false, false);
         if matches!(self.peek(0).kind, Tok::Id | Tok::Op | Tok::Not) {
             deferred = self.il_operator();
         } else {
             // `)` closes a deferred operation. Anything else is taken so that the grammar has something to report.
             let kind = self.peek(0).kind;
+            closes = kind == Tok::RParen;
             self.take(kind);
         }
         if deferred {
@@ -118,6 +119,8 @@ impl Blocks<'_, '_> {
             }
             match t.kind {
                 Tok::LParen => depth += 1,
+                // `OR r )`: closes the parenthesis in which this line stands.
+                Tok::RParen if depth == 0 && !deferred && !closes => break,
                 Tok::RParen => depth = depth.saturating_sub(1),
                 _ => {}
             }

@@ -269,10 +269,11 @@ impl Il<'_, '_, '_> {
             "" => "the end of the transition".to_string(),
             name => format!("label `{name}`"),
         };
-        let message = format!("{needs} has no current result to work on: the ways to {name} bring different ones");
+        let message = format!("{needs} has no current result to work on: not all ways to {name} bring the same");
         let mut d = Diagnostic::new(codes::TORN_CR, at, message);
-        let ways = self.labels[label].ways.clone();
-        for (from, way) in ways {
+        let mut ways = self.labels[label].ways.clone();
+        ways.sort_by_key(|w| w.0);
+        for (_, from, way) in ways {
             use super::flow::Way;
             let text = match way {
                 Way::Nothing => "from here: none".to_string(),
@@ -409,9 +410,8 @@ impl Il<'_, '_, '_> {
     }
 
     /// The current result as a label finds it, and its temporary. Notes the way, which begins at `at`.
-    pub fn bring(&mut self, label: usize, at: Span) {
-        let way = self.way();
-        self.labels[label].ways.push((at, way));
+    pub fn bring(&mut self, label: usize, from_above: bool, at: Span) {
+        self.note_way(label, from_above, at);
         if !self.labels[label].live {
             return;
         }

@@ -9,6 +9,7 @@ use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast::BinaryOp;
 use plcc_syntax::il_operators::When;
+use std::collections::VecDeque;
 
 /// What the current result is behind a label.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +117,103 @@ fn find_wants(lines: &mut [Line], labels: &mut [Label], at_end: Option<TypeId>) 
     }
 }
 
-impl Il<'_, '_, '_> {
+/// After so many changes of its type a label has none: constants and types on a circle of jumps.
+const MAX_CHANGES: u32 = 8;
+
+impl<'a> Il<'_, '_, 'a> {
+    /// Finds the type of the current result at each label by trial, from label to label along the jumps. What the trial
+    /// reports and emits is dropped.
+    pub fn find_entries(&mut self, lines: &[Line<'a>]) {
+        if !self.labels.iter().any(|l| l.live) {
+            return;
+        }
+        let trial = self.c.cx.trial();
+        let temps = self.c.temps.len();
+        // The line of each label; the end of a transition has none.
+        let mut starts: Vec<Option<usize>> = vec![None; self.labels.len()];
+        for (n, line) in lines.iter().enumerate() {
+            if let Some(label) = line.label {
+                starts[label] = Some(n);
+            }
+        }
+        let mut seen = vec![false; self.labels.len()];
+        // Where the current result is not used its type need not be known; a label for live ones waits for its first way.
+        let mut queue: VecDeque<(Option<usize>, usize)> = VecDeque::from([(None, 0)]);
+        for (label, start) in starts.iter().enumerate() {
+            let (Some(start), true, false) = (start, self.labels[label].used, self.labels[label].live) else {
+                continue;
+            };
+            seen[label] = true;
+            queue.push_back((Some(label), *start));
+        }
+        while let Some((label, start)) = queue.pop_front() {
+            self.walk(lines, label, start);
+            for label in std::mem::take(&mut self.touched) {
+                // What comes behind a mistake is visited too: its labels have other ways.
+                let new = self.labels[label].live && self.update(label) || !seen[label];
+                seen[label] = true;
+                if let (true, Some(start)) = (new, starts[label]) {
+                    queue.push_back((Some(label), start));
+                }
+            }
+        }
+        self.c.cx.undo(trial);
+        self.c.temps.truncate(temps);
+    }
+
+    /// Translates from a label (or the start) to the next label or to where control leaves.
+    fn walk(&mut self, lines: &[Line<'a>], label: Option<usize>, start: usize) {
+        self.out.clear();
+        self.dead_from = 0;
+        self.reachable = true;
+        self.told_unreachable = true;
+        self.cr = match label {
+            None => Current::Nothing,
+            Some(label) => self.at_label(label),
+        };
+        for (n, line) in lines.iter().enumerate().skip(start) {
+            self.at_line = n;
+            if let Some(next) = line.label.filter(|_| n > start || label.is_none()) {
+                return self.bring_from_above(next);
+            }
+            self.line(line);
+            if !self.reachable {
+                return;
+            }
+        }
+        self.at_line = lines.len();
+        if let Some(end) = self.end {
+            self.bring_from_above(end);
+        }
+    }
+
+    /// Whether the ways to a label make something else of it now.
+    fn update(&mut self, label: usize) -> bool {
+        let mut entry = self.merge(label);
+        if entry == self.labels[label].entry {
+            return false;
+        }
+        self.labels[label].changes += 1;
+        if self.labels[label].changes > MAX_CHANGES {
+            entry = Entry::Torn;
+        }
+        let changed = entry != self.labels[label].entry;
+        self.labels[label].entry = entry;
+        changed
+    }
+
+    /// Notes a way to a label.
+    pub fn note_way(&mut self, label: usize, from_above: bool, at: Span) {
+        self.touched.push(label);
+        let key = self.at_line * 2 + usize::from(from_above);
+        let way = self.way();
+        let ways = &mut self.labels[label].ways;
+        match ways.iter_mut().find(|w| w.0 == key) {
+            Some(known) => *known = (key, at, way),
+            None => ways.push((key, at, way)),
+        }
+    }
+
     /// What the current result brings along a way that begins here.
     pub fn way(&self) -> Way {
         match &self.cr {
@@ -133,7 +230,7 @@ impl Il<'_, '_, '_> {
 
     /// What the ways to a label make of the current result there.
     pub fn merge(&mut self, label: usize) -> Entry {
-        let ways: Vec<Way> = self.labels[label].ways.iter().map(|(_, w)| *w).collect();
+        let ways: Vec<Way> = self.labels[label].ways.iter().map(|(_, _, w)| *w).collect();
         if ways.contains(&Way::Nothing) {
             return Entry::Torn;
         }

@@ -16,7 +16,11 @@ use plcc_syntax::il_operators::When;
 impl<'a> Il<'_, '_, 'a> {
     /// Translates instructions in order.
     pub fn lines(&mut self, lines: &[Line<'a>]) {
-        for line in lines {
+        let inner = !self.open.is_empty();
+        for (n, line) in lines.iter().enumerate() {
+            if !inner {
+                self.at_line = n;
+            }
             if let Some(label) = line.label {
                 self.enter_label(label, line.span);
             }
@@ -31,7 +35,7 @@ impl<'a> Il<'_, '_, 'a> {
         }
     }
 
-    fn line(&mut self, line: &Line<'a>) {
+    pub fn line(&mut self, line: &Line<'a>) {
         match &line.what {
             What::Nothing => {}
             What::Bad => {
@@ -58,11 +62,7 @@ impl<'a> Il<'_, '_, 'a> {
     pub fn enter_label(&mut self, label: usize, at: Span) {
         self.drop_unreachable();
         if self.reachable {
-            let from = match &self.cr {
-                Current::Value(value) => value.span,
-                _ => self.labels[label].at,
-            };
-            self.bring(label, from);
+            self.bring_from_above(label);
             if !self.labels[label].live {
                 self.drop_current(at);
             }
@@ -71,16 +71,29 @@ impl<'a> Il<'_, '_, 'a> {
         self.dead_from = self.out.len();
         let id = self.labels[label].id;
         self.out.push(Stmt { kind: StmtKind::Label(id), span: at });
-        let at = self.labels[label].at;
-        self.cr = match self.labels[label].entry {
+        self.cr = self.at_label(label);
+    }
+
+    /// The way from the instruction above a label.
+    pub fn bring_from_above(&mut self, label: usize) {
+        let from = match &self.cr {
+            Current::Value(value) => value.span,
+            _ => self.labels[label].at,
+        };
+        self.bring(label, true, from);
+    }
+
+    /// The current result behind a label.
+    pub fn at_label(&mut self, label: usize) -> Current {
+        match self.labels[label].entry {
             _ if !self.labels[label].live => Current::Unknown,
             Entry::Unknown => Current::Unknown,
             Entry::Torn => Current::Torn(label),
             Entry::Typed(ty) => {
                 let temp = *self.labels[label].temp.get_or_insert_with(|| self.c.temps.push(ty));
-                Current::Value(self.in_temp(temp, ty, at))
+                Current::Value(self.in_temp(temp, ty, self.labels[label].at))
             }
-        };
+        }
     }
 
     /// Drops the statements that control does not reach.
@@ -309,7 +322,7 @@ impl<'a> Il<'_, '_, 'a> {
 
     fn jump_always(&mut self, line: &Line, target: usize) {
         if self.reachable {
-            self.bring(target, line.span);
+            self.bring(target, false, line.span);
         }
         if !self.labels[target].live {
             self.drop_current(line.span);
@@ -321,7 +334,7 @@ impl<'a> Il<'_, '_, 'a> {
 
     fn jump_if(&mut self, line: &Line, when: When, target: usize) {
         if self.reachable && matches!(self.cr, Current::Value(_)) {
-            self.bring(target, line.span);
+            self.bring(target, false, line.span);
         }
         // What the jump leads to may write anything, but the current result of that way is stored already.
         let Some(cond) = self.truth(line, when, &Touches::Nothing) else { return };

@@ -64,8 +64,11 @@ struct Label {
     want: Option<crate::types::TypeId>,
     /// What the current result is behind it.
     entry: Entry,
-    /// What the ways to it bring, found in this round.
-    ways: Vec<(Span, Way)>,
+    /// The ways to it: the number of their line (twice that, and 1 more for the way from above), where they begin, what
+    /// they bring.
+    ways: Vec<(usize, Span, Way)>,
+    /// How often `entry` changed.
+    changes: u32,
     temp: Option<TempId>,
 }
 
@@ -87,10 +90,11 @@ struct Il<'k, 'c, 'a> {
     body_end: Span,
     /// Where `out` ended when control did; what follows is dropped.
     dead_from: usize,
+    /// The number of the instruction, not counting those in parentheses.
+    at_line: usize,
+    /// Labels to which ways were noted.
+    touched: Vec<usize>,
 }
-
-/// Rounds of [`flow`] after which a label that still changes has no type. Each round carries a type over one backward jump.
-const MAX_ROUNDS: usize = 100;
 
 fn translate<'a>(
     c: &mut Checker<'_, 'a>,
@@ -109,6 +113,7 @@ fn translate<'a>(
         want: None,
         entry: Entry::Unknown,
         ways: Vec::new(),
+        changes: 0,
         temp: None,
     };
     for (n, found) in names.into_iter().enumerate() {
@@ -136,6 +141,8 @@ fn translate<'a>(
         told_unreachable: false,
         body_end: body.span.after(),
         dead_from: 0,
+        at_line: 0,
+        touched: Vec::new(),
     };
     il.find_entries(&lines);
     let condition = il.round(&lines);
@@ -143,37 +150,6 @@ fn translate<'a>(
 }
 
 impl<'a> Il<'_, '_, 'a> {
-    /// The types of the current result at the labels, by trial: each round learns what the jumps bring.
-    fn find_entries(&mut self, lines: &[Line<'a>]) {
-        if !self.labels.iter().any(|l| l.live) {
-            return;
-        }
-        for round in 0.. {
-            let trial = self.c.cx.trial();
-            let temps = self.c.temps.len();
-            self.round(lines);
-            self.c.cx.undo(trial);
-            self.c.temps.truncate(temps);
-            let mut settled = true;
-            for n in 0..self.labels.len() {
-                if !self.labels[n].live {
-                    continue;
-                }
-                let mut entry = self.merge(n);
-                if entry != self.labels[n].entry {
-                    settled = false;
-                    if round >= MAX_ROUNDS {
-                        entry = Entry::Torn;
-                    }
-                    self.labels[n].entry = entry;
-                }
-            }
-            if settled || round > MAX_ROUNDS {
-                return;
-            }
-        }
-    }
-
     /// Translates all lines with what is known of the labels. Gives the condition of a transition.
     fn round(&mut self, lines: &[Line<'a>]) -> Option<Expr> {
         self.out.clear();
@@ -181,7 +157,6 @@ impl<'a> Il<'_, '_, 'a> {
         self.cr = Current::Nothing;
         self.reachable = true;
         for label in &mut self.labels {
-            label.ways.clear();
             label.temp = None;
         }
         self.lines(lines);
