@@ -981,6 +981,8 @@ PROGRAM Main\n\
 VAR lamp : BOOL; END_VAR\n\
 {sfc_firing := 'strnog'}\n\
 INITIAL_STEP Idle: lamp; END_STEP\n\
+END_PROGRAM\n\
+```\n";
     // ---- E045x: Instruction List ----
     UNKNOWN_OPERATOR "E0450" Error "there is no such operator of IL" "\
 An instruction begins with an operator of Instruction List or with the name of a function. Instances of function blocks and actions are called with CAL. `plcc explain JMPC` says what an operator does.\n\

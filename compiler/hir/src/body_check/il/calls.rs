@@ -157,14 +157,17 @@ impl<'a> Il<'_, '_, 'a> {
 
     /// What a function gave; one without a result leaves none.
     fn set_result(&mut self, result: Operand, span: Span, operations: u32, at: Span) {
-        if let Operand::Value { expr: Expr { kind: ExprKind::Call(call), .. }, ty } = &result
-            && *ty == Types::VOID
-        {
-            self.emit(StmtKind::Call(call.clone()), at);
-            self.cr = Current::Nothing;
-            return;
+        match result {
+            Operand::Value { expr, ty } if ty == Types::VOID => {
+                let kind = match expr.kind {
+                    ExprKind::Call(call) => StmtKind::Call(call),
+                    _ => StmtKind::Eval(expr),
+                };
+                self.emit(kind, at);
+                self.cr = Current::Nothing;
+            }
+            result => self.set_current(result, span, operations),
         }
-        self.set_current(result, span, operations);
     }
 
     fn standard(
@@ -174,8 +177,12 @@ impl<'a> Il<'_, '_, 'a> {
         first: Option<Value>,
         args: &'a [ast::Arg],
     ) -> Operand {
-        if matches!(func.meaning, Meaning::NotYet) {
-            return self.c.not_yet(line.span, &format!("the standard function {}", func.name));
+        if matches!(func.meaning, Meaning::Outputs) {
+            self.c.report(
+                Diagnostic::new(codes::NO_VALUE, line.span, format!("{} gives no value, only outputs", func.name))
+                    .help(format!("use the formal form: it is {}", func.signature())),
+            );
+            return Operand::Error;
         }
         let taken = usize::from(first.is_some());
         let given = args.len() + taken;

@@ -104,7 +104,7 @@ pub(super) fn is_plain(place: &Place) -> bool {
     let steps = place.steps.iter().all(|s| match s {
         Step::Field(_) | Step::Member(_) | Step::Bit(_) | Step::Part(..) => true,
         Step::Index(indices, _) => indices.iter().all(|i| matches!(i.kind, ExprKind::Const(_))),
-        Step::Deref => false,
+        Step::OpenIndex(..) | Step::Character { .. } | Step::Deref => false,
     });
     steps && !matches!(place.root, Root::Deref(_))
 }
@@ -141,9 +141,16 @@ impl<'e> Facts<'e> {
                 call.inputs.iter().for_each(|(_, e)| self.of(e));
                 call.in_outs.iter().for_each(|(_, p)| self.reads.push(p));
             }
+            // It stores outputs.
+            ExprKind::StdCall(_) => self.calls = true,
             ExprKind::Std { args, .. } => {
                 self.faults = true;
                 args.iter().for_each(|a| self.of(a));
+            }
+            ExprKind::Text { args, .. } => args.iter().for_each(|a| self.of(a)),
+            ExprKind::Choose { selector, choices } => {
+                self.of(selector);
+                choices.iter().for_each(|c| self.of(c));
             }
         }
     }
@@ -156,6 +163,14 @@ impl<'e> Facts<'e> {
         for step in &place.steps {
             match step {
                 Step::Deref => self.faults = true,
+                Step::Character { index, .. } => {
+                    self.faults = true;
+                    self.of(index);
+                }
+                Step::OpenIndex(indices, _) => {
+                    self.faults = true;
+                    indices.iter().for_each(|i| self.of(&i.value));
+                }
                 Step::Index(indices, _) => {
                     self.faults |= !indices.iter().all(is_constant);
                     indices.iter().for_each(|i| self.of(i));

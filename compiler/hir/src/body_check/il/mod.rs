@@ -38,8 +38,6 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, scope: PouId, body: &'a ast::IlBody) ->
 /// Checks the instructions of a transition: the statements to run, and the condition, which is the current result at their
 /// end (\[I3\]). RET ends the instructions, not the POU. Labels are numbered on from `labels`; temporaries go to the
 /// checker's.
-// The charts, its callers, are being built.
-#[allow(dead_code)]
 pub(crate) fn check_condition<'a>(
     checker: &mut Checker<'_, 'a>,
     body: &'a ast::IlBody,
