@@ -1092,7 +1092,8 @@ Behind JMP and RET control goes on elsewhere; without a label that a jump names 
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR a, b : BOOL; END_VAR\n\
+VAR_INPUT a : BOOL; END_VAR\n\
+VAR_OUTPUT b : BOOL; END_VAR\n\
 LD a\n\
 ST b\n\
 RET\n\
@@ -1104,7 +1105,8 @@ END_PROGRAM\n\
 \n\
 ```st\n\
 PROGRAM Main\n\
-VAR danger, none, red : BOOL; END_VAR\n\
+VAR_INPUT danger : BOOL; END_VAR\n\
+VAR_OUTPUT none, red : BOOL; END_VAR\n\
 LD danger\n\
 AND none\n\
 S red\n\
