@@ -3,6 +3,7 @@
 use super::{Blocks, Construct};
 use crate::il_operators;
 use crate::token::{Tok, Token};
+use plcc_diag::codes;
 
 /// How far the end of an argument list is looked for.
 const MAX_LOOK: usize = 5000;
@@ -46,8 +47,12 @@ impl Blocks<'_, '_> {
                 let mut end = i + 1;
                 while !self.peek(end).first && Construct::closed_by(self.peek(end).kind).is_none() && end < MAX_LOOK {
                     if matches!(self.peek(end).kind, Tok::Semi | Tok::Assign) {
+                        // `LD a;` is no statement either; JMP is one of ST, too.
+                        if self.peek(end).kind == Tok::Semi {
+                            return operator && end == i + 2 && !self.is(i, "JMP");
+                        }
                         // `CAL t(IN := x)` has its `:=` in parentheses.
-                        return is_call(word.text(self.text)) && self.peek(end).kind == Tok::Assign;
+                        return is_call(word.text(self.text));
                     }
                     end += 1;
                 }
@@ -118,6 +123,10 @@ impl Blocks<'_, '_> {
                 break;
             }
             match t.kind {
+                Tok::Semi if depth == 0 && self.peek(1).first => {
+                    self.semicolon(t);
+                    continue;
+                }
                 Tok::LParen => depth += 1,
                 // `OR r )`: closes the parenthesis in which this line stands.
                 Tok::RParen if depth == 0 && !deferred && !closes => break,
@@ -127,6 +136,18 @@ impl Blocks<'_, '_> {
             self.take(t.kind);
         }
         self.insert(Tok::Eol);
+    }
+
+    /// A `;` behind an instruction: left out.
+    fn semicolon(&mut self, t: Token) {
+        self.at += 1;
+        if !std::mem::replace(&mut self.told_semicolon, true) {
+            self.report.push(
+                self.report
+                    .at(codes::UNEXPECTED, t.start, t.end, "an instruction of IL ends with its line, not with `;`")
+                    .help("remove the `;` here and behind the other instructions"),
+            );
+        }
     }
 
     fn line_ends(&self) -> bool {

@@ -135,7 +135,7 @@ impl<'a> Il<'_, '_, 'a> {
         if args.len() != parameters {
             return false;
         }
-        let rest: Vec<String> = args[1..].iter().map(|a| print_arg(a)).collect();
+        let rest: Vec<String> = args[1..].iter().map(print_arg).collect();
         let rest = if rest.is_empty() { String::new() } else { format!(" {}", rest.join(", ")) };
         let message = format!("{} arguments for {}, the current result among them", args.len() + 1, name.text);
         self.c.report(Diagnostic::new(codes::TOO_MANY_ARGUMENTS, first.span, message).help(format!(
