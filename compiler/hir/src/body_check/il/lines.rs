@@ -118,7 +118,7 @@ pub(super) fn read<'a>(c: &mut Checker<'_, 'a>, body: &'a ast::IlBody) -> (Vec<L
     reader.unused_labels();
     reader.labels_in_parentheses();
     let labels = reader.labels;
-    warn_of_stn(c, &lines);
+    super::stn::warn(c, &lines);
     (lines, labels)
 }
 
@@ -219,17 +219,17 @@ impl<'a> Reader<'_, '_, 'a> {
             };
             let what = match &line.inst {
                 None => What::Nothing,
-                Some(inst) => self.instruction(inst, span, inner),
+                Some(inst) => self.instruction(inst, inner),
             };
             lines.push(Line { label, what, name, op, span, live: false, want: None });
         }
         lines
     }
 
-    fn instruction(&mut self, inst: &'a ast::IlInst, span: Span, inner: bool) -> What<'a> {
+    fn instruction(&mut self, inst: &'a ast::IlInst, inner: bool) -> What<'a> {
         match inst {
             ast::IlInst::Error => What::Bad,
-            ast::IlInst::Simple { op, operands } => self.simple(op, operands, span, inner),
+            ast::IlInst::Simple { op, operands } => self.simple(op, operands, inner),
             ast::IlInst::Deferred { op, first, body, close } => self.deferred(op, first.as_ref(), body, *close),
             ast::IlInst::Call { op, call } => match il_operators::find(&op.text).map(|o| o.meaning) {
                 Some(Meaning::Call(when)) => What::Call { when, callee: &call.callee, args: &call.args },
@@ -267,7 +267,7 @@ impl<'a> Reader<'_, '_, 'a> {
         What::Deferred { op: meaning, negated, inner, close }
     }
 
-    fn simple(&mut self, op: &'a ast::Name, operands: &'a [ast::Arg], span: Span, inner: bool) -> What<'a> {
+    fn simple(&mut self, op: &'a ast::Name, operands: &'a [ast::Arg], inner: bool) -> What<'a> {
         if let [operand] = operands
             && let Some(operand) = positional(operand)
             && let Some(input) = self.input_operator(op, operand)
@@ -275,8 +275,8 @@ impl<'a> Reader<'_, '_, 'a> {
             return input;
         }
         match il_operators::find(&op.text) {
-            Some(operator) => self.operator(operator, op, operands, span, inner),
-            None => self.function(op, operands, span, inner),
+            Some(operator) => self.operator(operator, op, operands, inner),
+            None => self.function(op, operands, inner),
         }
     }
 
@@ -322,7 +322,6 @@ impl<'a> Reader<'_, '_, 'a> {
         operator: &'static Operator,
         op: &'a ast::Name,
         operands: &'a [ast::Arg],
-        span: Span,
         inner: bool,
     ) -> What<'a> {
         if let (Meaning::Jump(_) | Meaning::Return(_), true) = (operator.meaning, inner) {
@@ -383,10 +382,7 @@ impl<'a> Reader<'_, '_, 'a> {
             Meaning::Store { negated } => What::Store { negated, operand, ty: self.quiet_place(operand).map(|p| p.ty) },
             Meaning::Set(to) => What::Set { to, operand },
             Meaning::Binary { op, negated } => What::Binary { op, negated, operand },
-            Meaning::Not | Meaning::Return(_) => {
-                let _ = span;
-                What::Bad
-            }
+            Meaning::Not | Meaning::Return(_) => What::Bad,
         }
     }
 
@@ -463,7 +459,7 @@ impl<'a> Reader<'_, '_, 'a> {
     }
 
     /// An instruction whose first word is no operator.
-    fn function(&mut self, name: &'a ast::Name, args: &'a [ast::Arg], span: Span, inner: bool) -> What<'a> {
+    fn function(&mut self, name: &'a ast::Name, args: &'a [ast::Arg], inner: bool) -> What<'a> {
         let trial = self.c.cx.trial();
         let target = self.c.named_callee(name);
         self.c.cx.undo(trial);
@@ -490,7 +486,7 @@ impl<'a> Reader<'_, '_, 'a> {
                 );
                 What::Bad
             }
-            Target::Reported => self.unknown_operator(name, args, span, inner),
+            Target::Reported => self.unknown_operator(name, args, inner),
         }
     }
 
@@ -516,7 +512,7 @@ impl<'a> Reader<'_, '_, 'a> {
         );
     }
 
-    fn unknown_operator(&mut self, name: &'a ast::Name, args: &'a [ast::Arg], span: Span, inner: bool) -> What<'a> {
+    fn unknown_operator(&mut self, name: &'a ast::Name, args: &'a [ast::Arg], inner: bool) -> What<'a> {
         // An operator of that kind is meant, such as JMPC by JPMC; what it does to the labels is not reported again.
         let operators = il_operators::OPERATORS.iter().map(|o| o.name);
         let meant = similar(&name.text, operators).filter(|_| name.text.chars().count() > 1);
@@ -536,7 +532,7 @@ impl<'a> Reader<'_, '_, 'a> {
         match (input, meant.as_deref().and_then(il_operators::find)) {
             (None, Some(operator)) if matches!(operator.meaning, Meaning::Jump(_)) => {
                 let trial = self.c.cx.trial();
-                let what = self.operator(operator, name, args, span, inner);
+                let what = self.operator(operator, name, args, inner);
                 self.c.cx.undo(trial);
                 what
             }
@@ -563,39 +559,4 @@ fn first_argument(func: &StdFn) -> FirstArgument {
         (Some(Type::Var), None, Type::Var) => FirstArgument::AsResult,
         _ => FirstArgument::Fixed(None),
     }
-}
-
-/// `STN x` where `R x` was meant: x is set with S elsewhere, or the same current result is used with S or R. Before the
-/// end of the program that is an overwrite in each pass, not a reset on a condition.
-fn warn_of_stn(c: &mut Checker, lines: &[Line]) {
-    let mut set: FxHashMap<String, Span> = FxHashMap::default();
-    for line in lines {
-        if let What::Set { to: true, operand } = &line.what {
-            set.entry(text_of(operand)).or_insert(line.span);
-        }
-    }
-    let mut group = 0..0;
-    for (n, line) in lines.iter().enumerate() {
-        if !group.contains(&n) {
-            let same = lines[n..].iter().take_while(|l| matches!(l.what, What::Store { .. } | What::Set { .. }));
-            group = n..n + same.count().max(1);
-        }
-        let What::Store { negated: true, operand, .. } = &line.what else { continue };
-        let beside = lines[group.clone()].iter().find(|l| matches!(l.what, What::Set { .. })).map(|l| l.span);
-        let Some(other) = set.get(&text_of(operand)).copied().or(beside) else { continue };
-        let name = print_expr(operand);
-        c.report(
-            Diagnostic::new(
-                codes::STN_FOR_RESET,
-                line.span,
-                format!("`STN {name}` stores in each pass, also when the current result is FALSE"),
-            )
-            .also(other, "S and R act only when it is TRUE")
-            .help(format!("to reset it on this condition write `R {name}`")),
-        );
-    }
-}
-
-fn text_of(operand: &ast::Expr) -> String {
-    print_expr(operand).to_ascii_uppercase()
 }

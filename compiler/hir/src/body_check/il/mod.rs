@@ -13,6 +13,7 @@ mod current;
 mod flow;
 mod instructions;
 mod lines;
+mod stn;
 mod words;
 
 use crate::body::*;
