@@ -69,3 +69,18 @@ fn explain_knows_codes_functions_and_blocks() {
     assert_eq!(unknown.code, 2);
     assert!(unknown.stderr.contains("did you mean `LIMIT`?"), "{}", unknown.stderr);
 }
+
+/// `plcc explain` says of each operator of Instruction List what it does to the current result.
+#[test]
+fn each_operator_of_il_has_a_page() {
+    use plcc_syntax::il_operators::{INPUT_OPERATORS, OPERATORS};
+    let folder = tempfile::tempdir().expect("a folder");
+    let names = OPERATORS.iter().map(|o| (o.name, o.does)).chain(INPUT_OPERATORS.iter().map(|o| (o.name, o.of)));
+    for (name, text) in names {
+        let done = command(Path::new(PLCC), folder.path(), &["explain", name]);
+        assert_eq!(done.code, 0, "{name}: {}", done.stderr);
+        assert!(done.stdout.contains("Current result: ") && done.stdout.contains(text), "{name}: {}", done.stdout);
+    }
+    let done = command(Path::new(PLCC), folder.path(), &["explain", "jpmc"]);
+    assert!(done.code == 2 && done.stderr.contains("did you mean `JMPC`?"), "{}", done.stderr);
+}

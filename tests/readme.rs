@@ -106,21 +106,24 @@ fn the_test_command_is_what_ci_runs() {
     assert!(ci.contains("<!-- test command -->"), "{ci}");
 }
 
-/// The golden traces of the examples, in all engines.
+/// The golden traces of the examples, in all engines. The alarm is written in several languages: one stimulus, one trace.
 #[test]
 fn examples_give_their_traces() {
-    for (name, cycles, watch) in [
+    let alarm = "Main.danger,Main.receipt,Main.reset,Main.red,Main.yellow";
+    for (name, project, cycles, watch) in [
         (
             "tank",
+            ".",
             "700",
             "Main.control.step,Main.control.V1,Main.control.V2,Main.control.V3,Main.control.V4,Main.plant.level2",
         ),
-        ("trip", "240", "Main.boiler.pressure,Main.tripped,Main.burner,Main.first"),
-        ("interlock", "200", "Main.drive.left,Main.drive.right,Main.k1.closed,Main.k2.closed,Main.danger"),
-        ("control_loop", "900", "Main.seconds,Main.setpoint,Main.temperature,Main.power,Main.load"),
-        ("plant_states", "60", "Main.room.temp,Main.unit.state,Main.switch,Main.alarm"),
+        ("trip", ".", "240", "Main.boiler.pressure,Main.tripped,Main.burner,Main.first"),
+        ("interlock", ".", "200", "Main.drive.left,Main.drive.right,Main.k1.closed,Main.k2.closed,Main.danger"),
+        ("control_loop", ".", "900", "Main.seconds,Main.setpoint,Main.temperature,Main.power,Main.load"),
+        ("plant_states", ".", "60", "Main.room.temp,Main.unit.state,Main.switch,Main.alarm"),
         (
             "dosing",
+            ".",
             "240",
             "Main.control.V1,Main.control.V2,Main.control.V3,Main.control.V4,Main.control.batches,Main.plant.temperature,\
              Main.control2.V1,Main.control2.V2,Main.control2.V3,Main.control2.V4,Main.control2.batches,\
@@ -128,22 +131,27 @@ fn examples_give_their_traces() {
         ),
         (
             "heat_drain",
+            ".",
             "430",
             "Main.heater,Main.drain,Main.agitator,Main.announce,Main.rounds,Main.Off.X,Main.Heating.T,Main.Draining.T",
         ),
         (
             "mixer",
+            ".",
             "420",
             "Main.mixer.coarse,Main.mixer.fine,Main.mixer.agitator,Main.mixer.outlet,Main.mixer.water,Main.mixer.batches,\
              Main.vessel.weight,Main.vessel.content",
         ),
         (
             "safe_tank",
+            ".",
             "320",
             "Main.control.fill,Main.control.steam,Main.control.cooling,Main.control.drain,Main.control.shutOff,\
              Main.control.horn,Main.control.lamp,Main.fill.open,Main.steam.open,Main.control.Automatic.X,\
              Main.control.Protect.X,Main.control.sequence.Heating.X,Main.tank.level,Main.tank.temperature",
         ),
+        ("alarm", "il", "30", alarm),
+        ("alarm", "st", "30", alarm),
     ] {
         let example = project_root().join("examples").join(name);
         let folder = tempfile::tempdir().expect("a folder");
@@ -152,7 +160,7 @@ fn examples_give_their_traces() {
         if Path::new(&stimulus).exists() {
             flags.extend(["--stimulus", &stimulus]);
         }
-        let project = example.join("project.toml").display().to_string();
+        let project = example.join(project).join("project.toml").display().to_string();
         let run = |engine| {
             command(Path::new(PLCC), folder.path(), &[&["run", &project, "--engine", engine], &flags[..]].concat())
         };

@@ -5,6 +5,7 @@
 //! linked batches, `RANDOM_SEED` where to start. A failure prints the seed and the program.
 
 mod generate;
+mod il;
 
 use plcc_hir::Profile;
 use plcc_mir::interp::Interp;

@@ -46,9 +46,15 @@ pub fn compile(text: &str, profile: Profile) -> Result<Program, String> {
 /// The same, with what tells where its variables lie.
 pub fn compile_with_layout(text: &str, profile: Profile) -> Result<(Checked, Program, Layout), String> {
     let checked = check(text, profile)?;
+    let (program, layout) = lower(&checked)?;
+    Ok((checked, program, layout))
+}
+
+/// A checked source to verified MIR and its layout.
+pub fn lower(checked: &Checked) -> Result<(Program, Layout), String> {
     let app = checked.app.as_ref().ok_or("there is no PROGRAM")?;
     let (program, layout) =
         plcc_mir::lower::lower(&checked.defs, app, 0, Checks::ALL, false).map_err(|e| format!("{e:?}"))?;
     let problems = plcc_mir::verify::verify(&program);
-    if problems.is_empty() { Ok((checked, program, layout)) } else { Err(format!("verifier: {problems:?}")) }
+    if problems.is_empty() { Ok((program, layout)) } else { Err(format!("verifier: {problems:?}")) }
 }

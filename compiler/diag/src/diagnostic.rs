@@ -117,6 +117,18 @@ impl Diagnostics {
         all
     }
 
+    /// How many messages there are.
+    pub fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Takes back the messages behind the first `count`: to reword them, or to drop those of a trial.
+    pub fn split_off(&mut self, count: usize) -> Vec<Diagnostic> {
+        let taken = self.list.split_off(count.min(self.list.len()));
+        self.errors -= taken.iter().filter(|d| d.severity() == Severity::Error).count();
+        taken
+    }
+
     /// The message found last.
     pub fn last(&self) -> Option<&Diagnostic> {
         self.list.last()

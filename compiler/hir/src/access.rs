@@ -1,9 +1,10 @@
-//! Who may write a place, and what may be referred to (semantics.md \[S5\] \[R1\]).
+//! Who may write a place, what can be assigned, and what may be referred to (semantics.md \[S5\] \[R1\]).
 
 use crate::body::*;
 use crate::collect::charts;
 use crate::defs::*;
 use crate::expr::*;
+use crate::types::Type;
 use plcc_diag::{Diagnostic, codes};
 
 impl Checker<'_, '_> {
@@ -114,6 +115,39 @@ impl Checker<'_, '_> {
     /// Whether a path leads into an instance (whose inputs anyone may write).
     fn member_write(&self, place: &Place) -> bool {
         place.steps.iter().any(|s| matches!(s, Step::Member(_)))
+    }
+
+    /// Whether values of this type can be assigned.
+    pub fn assignable(&mut self, place: &Place) -> bool {
+        match self.cx.defs.types.get(place.ty) {
+            Type::Instance(pou) => {
+                let name = self.cx.defs.pous[*pou].name.clone();
+                self.report(
+                    Diagnostic::new(
+                        codes::NOT_WRITABLE,
+                        place.span,
+                        format!("an instance of `{name}` cannot be assigned"),
+                    )
+                    .help("assign its inputs, or pass the instance as VAR_IN_OUT"),
+                );
+                false
+            }
+            Type::AnyArray { .. } => {
+                self.report(
+                    Diagnostic::new(codes::NOT_WRITABLE, place.span, "an ARRAY [*] cannot be assigned as a whole")
+                        .help("its size is that of the call; assign the elements in a loop"),
+                );
+                false
+            }
+            _ => true,
+        }
+    }
+
+    /// Gives the range check of an assignment the name of its variable.
+    pub fn name_range_check(&self, value: &mut Expr, place: &Place) {
+        if let ExprKind::RangeCheck { name, .. } = &mut value.kind {
+            *name = self.place_text(place);
+        }
     }
 
     /// Whether references may point to it: not to a bit (\[R1\]).

@@ -33,12 +33,28 @@ pub(crate) enum Special {
     Bound { upper: bool },
 }
 
+/// What a call of a user's POU is given.
+pub(crate) struct Arguments<'a> {
+    /// The value for the first parameter: the current result of IL.
+    pub first: Option<(Operand, Span)>,
+    /// The others as written.
+    pub args: &'a [ast::Arg],
+    /// The name of the callee, for messages.
+    pub at: Span,
+}
+
+impl<'a> Arguments<'a> {
+    fn of(call: &'a ast::Call) -> Self {
+        Self { first: None, args: &call.args, at: call.callee.span }
+    }
+}
+
 impl<'a> Checker<'_, 'a> {
     /// A call as an operand: it must give a value.
     pub fn call_operand(&mut self, call: &'a ast::Call, span: Span, want: Option<TypeId>) -> Operand {
-        match self.callee(call) {
+        match self.callee(&call.callee) {
             Target::Reported => {
-                self.check_arguments_alone(call);
+                self.check_arguments_alone(&call.args);
                 Operand::Error
             }
             Target::Standard(func) => self.standard_call(func, call, span, want),
@@ -46,7 +62,8 @@ impl<'a> Checker<'_, 'a> {
             Target::User(callee, pou) => {
                 let result = self.cx.defs.pous[pou].result;
                 let is_function = matches!(callee, Callee::Function(_));
-                let Some(checked) = self.user_call(callee, pou, call, span) else { return Operand::Error };
+                let arguments = Arguments::of(call);
+                let Some(checked) = self.user_call(callee, pou, arguments, span) else { return Operand::Error };
                 if !is_function {
                     let name = self.cx.defs.pous[pou].name.clone();
                     self.report(
@@ -69,9 +86,9 @@ impl<'a> Checker<'_, 'a> {
 
     /// A call as a statement.
     pub fn call_statement(&mut self, call: &'a ast::Call, span: Span) -> Option<StmtKind> {
-        match self.callee(call) {
+        match self.callee(&call.callee) {
             Target::Reported => {
-                self.check_arguments_alone(call);
+                self.check_arguments_alone(&call.args);
                 None
             }
             Target::Standard(func) => match self.standard_call(func, call, span, None) {
@@ -85,13 +102,15 @@ impl<'a> Checker<'_, 'a> {
                 self.special_call(special, call, span);
                 None
             }
-            Target::User(callee, pou) => self.user_call(callee, pou, call, span).map(|c| StmtKind::Call(Box::new(c))),
+            Target::User(callee, pou) => {
+                self.user_call(callee, pou, Arguments::of(call), span).map(|c| StmtKind::Call(Box::new(c)))
+            }
         }
     }
 
     /// Errors inside the arguments of a call that cannot be resolved are still worth a message.
-    fn check_arguments_alone(&mut self, call: &'a ast::Call) {
-        for arg in &call.args {
+    pub fn check_arguments_alone(&mut self, args: &'a [ast::Arg]) {
+        for arg in args {
             match &arg.kind {
                 ast::ArgKind::Positional(e) | ast::ArgKind::Input(_, Some(e)) => {
                     self.operand(e, None);
@@ -104,18 +123,19 @@ impl<'a> Checker<'_, 'a> {
         }
     }
 
-    fn callee(&mut self, call: &'a ast::Call) -> Target {
-        match &call.callee.kind {
+    /// What an expression in call position names.
+    pub fn callee(&mut self, callee: &'a ast::Expr) -> Target {
+        match &callee.kind {
             ast::ExprKind::Name(name) => self.named_callee(name),
-            ast::ExprKind::Member(base, name) => self.member_callee(base, name, &call.callee),
-            ast::ExprKind::Index(..) | ast::ExprKind::Deref(_) => match self.place(&call.callee) {
+            ast::ExprKind::Member(base, name) => self.member_callee(base, name, callee),
+            ast::ExprKind::Index(..) | ast::ExprKind::Deref(_) => match self.place(callee) {
                 Some(place) => self.instance_callee(place),
                 None => Target::Reported,
             },
             ast::ExprKind::Error => Target::Reported,
             _ => {
                 self.report(
-                    Diagnostic::new(codes::NOT_CALLABLE, call.callee.span, "this cannot be called")
+                    Diagnostic::new(codes::NOT_CALLABLE, callee.span, "this cannot be called")
                         .help("a call names a function, an instance of a function block or an action"),
                 );
                 Target::Reported
@@ -124,7 +144,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// In call position the search goes on to something callable (\[L3\]).
-    fn named_callee(&mut self, name: &'a ast::Name) -> Target {
+    pub fn named_callee(&mut self, name: &'a ast::Name) -> Target {
         let found = self.lookup(name);
         let key = fold(&name.text);
         match found {
@@ -246,7 +266,8 @@ impl<'a> Checker<'_, 'a> {
             .collect()
     }
 
-    fn user_call(&mut self, callee: Callee, pou: PouId, call: &'a ast::Call, span: Span) -> Option<Call> {
+    /// A call of a user's POU.
+    pub fn user_call(&mut self, callee: Callee, pou: PouId, call: Arguments<'a>, span: Span) -> Option<Call> {
         let mut out =
             Call { callee, inputs: Vec::new(), in_outs: Vec::new(), outputs: Vec::new(), en: None, eno: None, span };
         let mut fine = true;
@@ -273,11 +294,20 @@ impl<'a> Checker<'_, 'a> {
         let mut given: FxHashMap<VarId, Span> = FxHashMap::default();
         let by_order = self.parameters(pou, &[Section::Input, Section::InOut]);
         let mut next = by_order.into_iter();
-        for arg in &call.args {
+        let given_count = call.args.len() + usize::from(call.first.is_some());
+        if let Some((value, at)) = call.first {
+            let Some(param) = next.next() else {
+                self.too_many(pou, given_count, at);
+                return None;
+            };
+            given.insert(param, at);
+            fine &= self.pass_value(param, value, at, &mut out);
+        }
+        for arg in call.args {
             match &arg.kind {
                 ast::ArgKind::Positional(e) => {
                     let Some(param) = next.next() else {
-                        self.too_many(pou, call, arg.span);
+                        self.too_many(pou, given_count, arg.span);
                         return None;
                     };
                     given.insert(param, arg.span);
@@ -350,7 +380,7 @@ impl<'a> Checker<'_, 'a> {
                 }
             }
         }
-        fine &= self.all_in_outs_given(pou, &given, call);
+        fine &= self.all_in_outs_given(pou, &given, call.at);
         fine.then_some(out)
     }
 
@@ -399,12 +429,12 @@ impl<'a> Checker<'_, 'a> {
         self.report(Diagnostic::new(codes::WRONG_DIRECTION, name.span, message).help(help));
     }
 
-    fn too_many(&mut self, pou: PouId, call: &ast::Call, span: Span) {
+    fn too_many(&mut self, pou: PouId, count: usize, span: Span) {
         let params = self.parameters(pou, &[Section::Input, Section::InOut]);
         let names: Vec<&str> = params.iter().map(|v| self.cx.defs.vars[*v].name.as_str()).collect();
         let name = self.cx.defs.pous[pou].name.clone();
         let parameters = if names.len() == 1 { "parameter" } else { "parameters" };
-        let message = format!("{} arguments for the {} {parameters} of `{name}`", call.args.len(), names.len());
+        let message = format!("{count} arguments for the {} {parameters} of `{name}`", names.len());
         let help = if names.is_empty() { "it has none".into() } else { format!("it takes {}", names.join(", ")) };
         self.report(Diagnostic::new(codes::TOO_MANY_ARGUMENTS, span, message).help(help));
     }
@@ -474,12 +504,39 @@ impl<'a> Checker<'_, 'a> {
             out.in_outs.push((param, place));
             return passed;
         }
-        let value = self.value(e, ty);
+        let value = self.operand(e, Some(ty));
+        self.pass_value(param, value, e.span, out)
+    }
+
+    /// A value for an input.
+    fn pass_value(&mut self, param: VarId, value: Operand, at: Span, out: &mut Call) -> bool {
+        let ty = self.type_of_var(param);
+        if self.cx.defs.vars[param].section == Section::InOut {
+            let name = self.cx.defs.vars[param].name.clone();
+            self.report(
+                Diagnostic::new(codes::NOT_A_VARIABLE, at, format!("VAR_IN_OUT `{name}` needs a variable"))
+                    .help("a value cannot be changed; use the formal form and name a variable"),
+            );
+            return false;
+        }
+        let value = self.coerce(value, at, ty);
         if value.ty == Types::ERROR {
             return false;
         }
         out.inputs.push((param, value));
         true
+    }
+
+    /// A call of an instance that gives one input a value: an input operator of IL. `at` is the instance's name.
+    pub fn input_call(&mut self, instance: Place, input: VarId, value: (Operand, Span), span: Span) -> Option<Call> {
+        let pou = self.cx.instance_of(instance.ty)?;
+        let at = instance.span;
+        let callee = Callee::Instance(instance, pou);
+        let mut out =
+            Call { callee, inputs: Vec::new(), in_outs: Vec::new(), outputs: Vec::new(), en: None, eno: None, span };
+        let fine = self.pass_value(input, value.0, value.1, &mut out);
+        let given = FxHashMap::from_iter([(input, at)]);
+        (self.all_in_outs_given(pou, &given, at) && fine).then_some(out)
     }
 
     /// A VAR_IN_OUT takes a variable of equal type; with open capacity or bounds any (\[S4\]).
@@ -593,19 +650,15 @@ impl<'a> Checker<'_, 'a> {
         matches!(self.cx.defs.types.get(ty), Type::Enum(_))
     }
 
-    fn all_in_outs_given(&mut self, pou: PouId, given: &FxHashMap<VarId, Span>, call: &ast::Call) -> bool {
+    fn all_in_outs_given(&mut self, pou: PouId, given: &FxHashMap<VarId, Span>, at: Span) -> bool {
         let missing: Vec<VarId> =
             self.parameters(pou, &[Section::InOut]).into_iter().filter(|v| !given.contains_key(v)).collect();
         for param in &missing {
             let (name, span) = (self.cx.defs.vars[*param].name.clone(), self.cx.defs.vars[*param].span);
             self.report(
-                Diagnostic::new(
-                    codes::MISSING_IN_OUT,
-                    call.callee.span,
-                    format!("VAR_IN_OUT `{name}` is not connected"),
-                )
-                .also(span, "declared here")
-                .help(format!("give it a variable in every call: `{name} := variable`")),
+                Diagnostic::new(codes::MISSING_IN_OUT, at, format!("VAR_IN_OUT `{name}` is not connected"))
+                    .also(span, "declared here")
+                    .help(format!("give it a variable in every call: `{name} := variable`")),
             );
         }
         missing.is_empty()

@@ -114,6 +114,16 @@ pub(crate) struct Cx<'a> {
     pub half_read: FxHashSet<FileId>,
     /// Names that were reported as unknown, by POU: one message each.
     reported: FxHashSet<(Option<PouId>, SmolStr)>,
+    /// The same in order, for trials.
+    reported_order: Vec<(Option<PouId>, SmolStr)>,
+}
+
+/// Where a trial began (see [`Cx::trial`]).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trial {
+    diags: usize,
+    codesys_only: usize,
+    reported: usize,
 }
 
 impl<'a> Cx<'a> {
@@ -139,6 +149,7 @@ impl<'a> Cx<'a> {
             step_type: None,
             half_read: FxHashSet::default(),
             reported: FxHashSet::default(),
+            reported_order: Vec::new(),
         }
     }
 
@@ -148,7 +159,26 @@ impl<'a> Cx<'a> {
 
     /// Whether something about a name is reported for the first time in a POU.
     pub fn first_report(&mut self, scope: Option<PouId>, name: &str) -> bool {
-        self.reported.insert((scope, fold(name)))
+        let key = (scope, fold(name));
+        let new = self.reported.insert(key.clone());
+        if new {
+            self.reported_order.push(key);
+        }
+        new
+    }
+
+    /// Begins a trial: what is checked from here on only to learn a type, and is checked again.
+    pub fn trial(&self) -> Trial {
+        Trial { diags: self.diags.count(), codesys_only: self.codesys_only, reported: self.reported_order.len() }
+    }
+
+    /// Drops the messages of a trial.
+    pub fn undo(&mut self, trial: Trial) {
+        self.diags.split_off(trial.diags);
+        self.codesys_only = trial.codesys_only;
+        for key in self.reported_order.drain(trial.reported..) {
+            self.reported.remove(&key);
+        }
     }
 
     /// Whether a declaration gives the variable a value.

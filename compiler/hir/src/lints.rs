@@ -194,7 +194,7 @@ struct Calls<'c, 'a, 'o> {
     out: &'o mut Vec<Diagnostic>,
 }
 
-/// An instance by its path, and where it was called.
+/// An instance by its path (and its one input), and where it was called.
 type Called = (String, Span);
 
 impl Calls<'_, '_, '_> {
@@ -239,7 +239,12 @@ impl Calls<'_, '_, '_> {
         // `t(IN := FALSE)` resets a timer before its call proper: all values are constants.
         let reset = !call.inputs.is_empty() && call.inputs.iter().all(|(_, e)| matches!(e.kind, ExprKind::Const(_)));
         let Some(path) = self.path(place).filter(|_| !reset) else { return };
-        match called.iter().find(|(p, _)| *p == path) {
+        // `PT t`, then `IN t` in IL: each gives one input its value. Only the same input twice is two places.
+        let key = match (call.inputs.as_slice(), call.outputs.is_empty()) {
+            ([(input, _)], true) => format!("{path} by {}", self.cx.defs.vars[*input].name),
+            _ => path.clone(),
+        };
+        match called.iter().find(|(p, _)| *p == key) {
             Some((_, first)) => self.out.push(
                 Diagnostic::new(
                     codes::CALLED_TWICE,
@@ -249,7 +254,7 @@ impl Calls<'_, '_, '_> {
                 .also(*first, "first called here")
                 .help("timers, counters and edges then see two calls per cycle; use an instance for each place"),
             ),
-            None => called.push((path, call.span)),
+            None => called.push((key, call.span)),
         }
     }
 

@@ -32,6 +32,21 @@ fn binary_of(op: Operator) -> Option<BinaryOp> {
     })
 }
 
+/// The type that argument `n` is asked for, where the place of the call asks for `want`: that reaches only arguments of the
+/// type variable.
+pub(crate) fn wanted_of_argument(func: &StdFn, n: usize, want: Option<TypeId>) -> Option<TypeId> {
+    match (func.param_type(n), func.bound, func.result) {
+        (Some(Type::Fixed(elem)), ..) | (Some(Type::Var), Some(elem), _) => Some(Types::elem(elem)),
+        (Some(Type::Var), None, Type::Var) => want,
+        (Some(Type::Var), None, Type::Fixed(elem))
+            if matches!(func.meaning, Meaning::Formula(_)) && elem != Elem::Bool =>
+        {
+            want
+        }
+        _ => None,
+    }
+}
+
 impl<'a> Checker<'_, 'a> {
     pub fn standard_call(
         &mut self,
@@ -41,22 +56,10 @@ impl<'a> Checker<'_, 'a> {
         want: Option<TypeId>,
     ) -> Operand {
         let Some(placed) = self.place_arguments(func, call) else { return Operand::Error };
-        // What the place asks for reaches only arguments of the type variable.
-        let var_want = match (func.bound, func.result) {
-            (Some(elem), _) => Some(Types::elem(elem)),
-            (None, Type::Var) => want,
-            (None, Type::Fixed(elem)) if matches!(func.meaning, Meaning::Formula(_)) && elem != Elem::Bool => want,
-            _ => None,
-        };
         let mut operands = Vec::with_capacity(placed.args.len());
         for (n, e) in placed.args.iter().enumerate() {
             let Some(e) = e else { return Operand::Error };
-            let place = match func.param_type(n) {
-                Some(Type::Fixed(elem)) => Some(Types::elem(elem)),
-                Some(Type::Var) => var_want,
-                _ => None,
-            };
-            operands.push((self.operand(e, place), e.span));
+            operands.push((self.operand(e, wanted_of_argument(func, n, want)), e.span));
         }
         if operands.iter().any(|(o, _)| matches!(o, Operand::Error)) {
             return Operand::Error;

@@ -203,6 +203,8 @@ struct Blocks<'a, 'd> {
     next_end_var: usize,
     /// END words of statements without `;`.
     bare_ends: Vec<Token>,
+    /// A `;` behind an instruction of IL was reported: once per file.
+    told_semicolon: bool,
 }
 
 impl<'a, 'd> Blocks<'a, 'd> {
@@ -221,6 +223,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
             lost: false,
             next_end_var: 0,
             bare_ends: Vec::new(),
+            told_semicolon: false,
         }
     }
 

@@ -7,6 +7,7 @@
 pub mod ast;
 mod blocks;
 mod construct;
+pub mod il_operators;
 mod lexer;
 mod recover;
 mod report;

@@ -299,10 +299,21 @@ fn instruction_lists() {
 }
 
 #[test]
+fn a_parenthesis_may_close_on_the_line_of_its_last_instruction() {
+    let closed = ["LD a", "AND( b", "  OR c", ")", "ST x"];
+    for text in ["LD a\nAND( b\nOR c\n)\nST x", "LD a\nAND( b\nOR c )\nST x", "LD a\nAND(b\n\nOR c)\n\nST x"] {
+        assert_eq!(body(text), closed, "{text}");
+    }
+    assert_eq!(body("LD a\nOR( b )\nST x"), ["LD a", "OR( b", ")", "ST x"]);
+    assert_eq!(body("ADD(IN1 := a, IN2 := b)\nST x"), ["ADD(IN1 := a, IN2 := b)", "ST x"]);
+}
+
+#[test]
 fn bodies_are_told_apart() {
     let kind =
         |text: &str| tree(&format!("PROGRAM Main\n{text}\nEND_PROGRAM\n")).lines().nth(1).map(|l| l.trim().to_string());
     for il in [
+        "Read_inputs\nST x",
         "LD x",
         "l1:\nLD x\nST y",
         "LDN x",

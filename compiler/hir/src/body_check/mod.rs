@@ -1,12 +1,12 @@
 //! Bodies to [`Body`](crate::body::Body): one module per notation.
 
+pub(crate) mod il;
 pub(crate) mod sfc;
 mod st;
 
 use crate::body::Body;
 use crate::cx::Cx;
 use crate::defs::*;
-use plcc_diag::{Diagnostic, codes};
 use plcc_syntax::ast;
 
 /// Checks every body.
@@ -27,16 +27,9 @@ pub(crate) fn check_all(cx: &mut Cx) {
 fn check<'a>(cx: &mut Cx<'a>, id: PouId, body: &'a ast::Body) -> Body {
     // An action's names are those of its POU.
     let scope = cx.defs.pous[id].owner.unwrap_or(id);
-    let not_yet = |cx: &mut Cx, span, what: &str| {
-        cx.push(
-            Diagnostic::new(codes::NOT_YET, span, format!("{what} bodies are not implemented yet"))
-                .help("the declarations of this POU were checked; write the body in Structured Text for now"),
-        );
-        Body::default()
-    };
     match body {
         ast::Body::St(stmts) => st::check(cx, scope, stmts),
-        ast::Body::Il(il) => not_yet(cx, il.span.before(), "Instruction List"),
+        ast::Body::Il(body) => il::check(cx, scope, body),
         ast::Body::Sfc(chart) => sfc::check(cx, id, scope, chart),
     }
 }

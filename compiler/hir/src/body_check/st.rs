@@ -126,8 +126,8 @@ impl<'a> St<'_, 'a> {
         };
         let writable = self.c.check_writable(&place) && self.not_a_control_variable(&place);
         let mut value = self.c.value(value, place.ty);
-        name_range_check(&mut value, || self.c.place_text(&place));
-        if value.ty == Types::ERROR || !writable || !self.assignable(&place) {
+        self.c.name_range_check(&mut value, &place);
+        if value.ty == Types::ERROR || !writable || !self.c.assignable(&place) {
             return None;
         }
         Some(StmtKind::Assign { target: place, value })
@@ -171,32 +171,6 @@ impl<'a> St<'_, 'a> {
     /// The target of an assignment: a function assigns its result by its own name.
     fn target(&mut self, e: &'a ast::Expr) -> Option<Place> {
         self.c.place(e)
-    }
-
-    /// Whether values of this type can be assigned.
-    fn assignable(&mut self, place: &Place) -> bool {
-        match self.c.cx.defs.types.get(place.ty) {
-            Type::Instance(pou) => {
-                let name = self.c.cx.defs.pous[*pou].name.clone();
-                self.c.report(
-                    Diagnostic::new(
-                        codes::NOT_WRITABLE,
-                        place.span,
-                        format!("an instance of `{name}` cannot be assigned"),
-                    )
-                    .help("assign its inputs, or pass the instance as VAR_IN_OUT"),
-                );
-                false
-            }
-            Type::AnyArray { .. } => {
-                self.c.report(
-                    Diagnostic::new(codes::NOT_WRITABLE, place.span, "an ARRAY [*] cannot be assigned as a whole")
-                        .help("its size is that of the call; assign the elements in a loop"),
-                );
-                false
-            }
-            _ => true,
-        }
     }
 
     /// Assigning to a FOR variable inside its loop: an error in strict (\[S2\]).
@@ -598,12 +572,5 @@ impl<'a> St<'_, 'a> {
         for span in unused {
             self.c.report(Diagnostic::new(codes::UNUSED_LABEL, span, "no jump leads to this label").help("remove it"));
         }
-    }
-}
-
-/// Gives the range check of an assignment the name of its variable.
-fn name_range_check(value: &mut Expr, name: impl FnOnce() -> String) {
-    if let ExprKind::RangeCheck { name: text, .. } = &mut value.kind {
-        *text = name();
     }
 }

@@ -1,6 +1,6 @@
 //! Instruction List.
 
-use super::{Arg, Expr, Name};
+use super::{Arg, Call, Expr, Name};
 use plcc_diag::Span;
 
 /// An IL body, or what stands inside deferred parentheses.
@@ -23,15 +23,15 @@ pub struct IlLine {
     pub span: Span,
 }
 
-/// The forms of an instruction. Operators are names as written: `hir` decides them by a table.
+/// The forms of an instruction. Operators are names as written: `hir` decides them by `il_operators`.
 #[derive(Debug, Clone)]
 pub enum IlInst {
-    /// `LD x`, `NOT`, `LIMIT 0, 10`: an operator or a function name with operands.
+    /// `LD x`, `NOT`, `CALC fb`, `JMP label`, `LIMIT 0, 10`: an operator or a function name with operands.
     Simple {
         /// The operator.
         op: Name,
-        /// Its operands; operators take at most one.
-        operands: Vec<Expr>,
+        /// Its operands, all positional; operators take at most one.
+        operands: Vec<Arg>,
     },
     /// `AND( x` ... `)`.
     Deferred {
@@ -44,26 +44,15 @@ pub enum IlInst {
         /// The closing parenthesis.
         close: Span,
     },
-    /// `CAL t(IN := a, Q => b)`, `CALC fb`, `JMP label` are `Simple`; with an argument list they are here.
+    /// `CAL t(IN := a, Q => b)`.
     Call {
         /// `CAL`, `CALC`, `CALCN`.
         op: Name,
-        /// The instance or action.
-        callee: Expr,
-        /// In written order.
-        args: Vec<Arg>,
-        /// From `(` to `)`.
-        parens: Span,
+        /// The instance or action with its arguments.
+        call: Call,
     },
     /// `LIMIT(MN := 0, IN := x, MX := 10)`: a function in formal form.
-    Function {
-        /// Its name.
-        name: Name,
-        /// In written order.
-        args: Vec<Arg>,
-        /// From `(` to `)`.
-        parens: Span,
-    },
+    Function(Call),
     /// What could not be parsed; reported already.
     Error,
 }

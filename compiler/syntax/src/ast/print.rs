@@ -144,19 +144,23 @@ impl Printer {
     fn instruction(&mut self, label: &str, inst: &IlInst) {
         match inst {
             IlInst::Simple { op, operands } => {
-                let operands: Vec<String> = operands.iter().map(print_expr).collect();
-                self.line(format!("{label}{} {}", op.text, operands.join(", ")).trim_end());
+                self.line(format!("{label}{} {}", op.text, expressions::args(operands)).trim_end());
             }
             IlInst::Deferred { op, first, body, .. } => {
                 let first = first.as_ref().map_or(String::new(), print_expr);
                 self.block(&format!("{label}{}( {first}", op.text), |p| p.il(body));
                 self.line(")");
             }
-            IlInst::Call { op, callee, args, .. } => {
-                self.line(&format!("{label}{} {}({})", op.text, print_expr(callee), expressions::args(args)));
+            IlInst::Call { op, call } => {
+                self.line(&format!(
+                    "{label}{} {}({})",
+                    op.text,
+                    print_expr(&call.callee),
+                    expressions::args(&call.args)
+                ));
             }
-            IlInst::Function { name, args, .. } => {
-                self.line(&format!("{label}{}({})", name.text, expressions::args(args)));
+            IlInst::Function(call) => {
+                self.line(&format!("{label}{}({})", print_expr(&call.callee), expressions::args(&call.args)));
             }
             IlInst::Error => self.line(&format!("{label}error")),
         }

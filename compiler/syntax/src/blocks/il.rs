@@ -1,23 +1,19 @@
 //! Instruction List: how a body is recognised, and its lines, which end where the text's lines do.
 
 use super::{Blocks, Construct};
+use crate::il_operators;
 use crate::token::{Tok, Token};
+use plcc_diag::codes;
 
-/// Operators of IL that are words.
-const OPERATORS: &[&str] = &[
-    "LD", "LDN", "ST", "STN", "S", "R", "AND", "ANDN", "OR", "ORN", "XOR", "XORN", "NOT", "ADD", "SUB", "MUL", "DIV",
-    "MOD", "GT", "GE", "EQ", "NE", "LE", "LT", "JMP", "JMPC", "JMPCN", "CAL", "CALC", "CALCN", "RET", "RETC", "RETCN",
-];
-/// Operators that take `(`.
-const DEFERRED: &[&str] = &[
-    "AND", "ANDN", "OR", "ORN", "XOR", "XORN", "ADD", "SUB", "MUL", "DIV", "MOD", "GT", "GE", "EQ", "NE", "LE", "LT",
-    "&", "&N",
-];
 /// How far the end of an argument list is looked for.
 const MAX_LOOK: usize = 5000;
 
-fn listed(words: &[&str], text: &str) -> bool {
-    words.iter().any(|w| w.eq_ignore_ascii_case(text))
+fn is_operator(word: &str) -> bool {
+    il_operators::find(word).is_some()
+}
+
+fn is_call(word: &str) -> bool {
+    il_operators::find(word).is_some_and(|o| matches!(o.meaning, il_operators::Meaning::Call(_)))
 }
 
 impl Blocks<'_, '_> {
@@ -36,10 +32,11 @@ impl Blocks<'_, '_> {
         if !matches!(word.kind, Tok::Id | Tok::Op | Tok::Not) {
             return false;
         }
-        let operator = listed(OPERATORS, word.text(self.text)) || word.kind == Tok::Op;
+        let operator = is_operator(word.text(self.text)) || word.kind == Tok::Op;
         let alone = next.first || Construct::closed_by(next.kind).is_some();
         match next.kind {
-            _ if alone => operator,
+            // A function without operands: the next line tells.
+            _ if alone => operator || word.kind == Tok::Id && self.operator_at(i + 1),
             Tok::LParen => {
                 let Some(end) = self.closing_paren(i + 1) else { return false };
                 let after = self.peek(end + 1);
@@ -50,9 +47,12 @@ impl Blocks<'_, '_> {
                 let mut end = i + 1;
                 while !self.peek(end).first && Construct::closed_by(self.peek(end).kind).is_none() && end < MAX_LOOK {
                     if matches!(self.peek(end).kind, Tok::Semi | Tok::Assign) {
+                        // `LD a;` is no statement either; JMP is one of ST, too.
+                        if self.peek(end).kind == Tok::Semi {
+                            return operator && end == i + 2 && !self.is(i, "JMP");
+                        }
                         // `CAL t(IN := x)` has its `:=` in parentheses.
-                        let call = listed(&["CAL", "CALC", "CALCN"], word.text(self.text));
-                        return call && self.peek(end).kind == Tok::Assign;
+                        return is_call(word.text(self.text));
                     }
                     end += 1;
                 }
@@ -65,7 +65,7 @@ impl Blocks<'_, '_> {
     fn operator_at(&self, i: usize) -> bool {
         let (t, next) = (self.peek(i), self.peek(i + 1));
         matches!(t.kind, Tok::Id | Tok::Op | Tok::Not)
-            && listed(OPERATORS, t.text(self.text))
+            && is_operator(t.text(self.text))
             && !matches!(next.kind, Tok::Assign | Tok::Arrow | Tok::Dot | Tok::LBracket | Tok::Semi)
     }
 
@@ -100,12 +100,13 @@ impl Blocks<'_, '_> {
                 return self.insert(Tok::Eol);
             }
         }
-        let mut deferred = false;
+        let (mut deferred, mut closes) = (false, false);
         if matches!(self.peek(0).kind, Tok::Id | Tok::Op | Tok::Not) {
             deferred = self.il_operator();
         } else {
             // `)` closes a deferred operation. Anything else is taken so that the grammar has something to report.
             let kind = self.peek(0).kind;
+            closes = kind == Tok::RParen;
             self.take(kind);
         }
         if deferred {
@@ -122,13 +123,31 @@ impl Blocks<'_, '_> {
                 break;
             }
             match t.kind {
+                Tok::Semi if depth == 0 && self.peek(1).first => {
+                    self.semicolon(t);
+                    continue;
+                }
                 Tok::LParen => depth += 1,
+                // `OR r )`: closes the parenthesis in which this line stands.
+                Tok::RParen if depth == 0 && !deferred && !closes => break,
                 Tok::RParen => depth = depth.saturating_sub(1),
                 _ => {}
             }
             self.take(t.kind);
         }
         self.insert(Tok::Eol);
+    }
+
+    /// A `;` behind an instruction: left out.
+    fn semicolon(&mut self, t: Token) {
+        self.at += 1;
+        if !std::mem::replace(&mut self.told_semicolon, true) {
+            self.report.push(
+                self.report
+                    .at(codes::UNEXPECTED, t.start, t.end, "an instruction of IL ends with its line, not with `;`")
+                    .help("remove the `;` here and behind the other instructions"),
+            );
+        }
     }
 
     fn line_ends(&self) -> bool {
@@ -149,9 +168,12 @@ impl Blocks<'_, '_> {
         }
         let word = &self.text[t.start as usize..end as usize];
         let open = self.peek(length).kind == Tok::LParen && !self.peek(length).first;
+        // `ADD(IN1 := a, IN2 := b)`: an operator's name is also that of a function.
+        let formal = open && self.peek(length + 1).kind == Tok::Id && self.peek(length + 2).kind == Tok::Assign;
         let kind = match open {
-            true if listed(DEFERRED, word) => Tok::IlDefer,
-            true if !listed(OPERATORS, word) => Tok::IlFunction,
+            true if formal => Tok::IlFunction,
+            true if il_operators::find(word).is_some_and(|o| o.is_deferred()) => Tok::IlDefer,
+            true if !is_operator(word) => Tok::IlFunction,
             _ => Tok::IlOp,
         };
         self.at += length;

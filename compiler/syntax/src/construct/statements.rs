@@ -2,6 +2,7 @@
 
 use super::{CaseItem, Context, SfcItem};
 use crate::ast::*;
+use crate::il_operators::{self, Meaning};
 use plcc_diag::{Span, codes};
 
 /// Qualifiers whose second part is a duration.
@@ -97,20 +98,18 @@ impl Context<'_> {
 
     /// An operator with operands; `CAL fb(...)` is a call.
     pub fn il_simple(&self, op: Name, mut operands: Vec<Expr>) -> Box<IlInst> {
-        let calls = ["CAL", "CALC", "CALCN"].iter().any(|c| op.text.eq_ignore_ascii_case(c));
+        let calls = il_operators::find(&op.text).is_some_and(|o| matches!(o.meaning, Meaning::Call(_)));
         if calls
             && operands.len() == 1
             && let Some(operand) = operands.pop()
         {
             match operand.kind {
-                ExprKind::Call(call) => {
-                    let Call { callee, args, parens } = *call;
-                    return Box::new(IlInst::Call { op, callee, args, parens });
-                }
+                ExprKind::Call(call) => return Box::new(IlInst::Call { op, call: *call }),
                 kind => operands.push(Expr { kind, ..operand }),
             }
         }
-        Box::new(IlInst::Simple { op, operands })
+        let positional = |e: Expr| Arg { span: e.span, kind: ArgKind::Positional(e) };
+        Box::new(IlInst::Simple { op, operands: operands.into_iter().map(positional).collect() })
     }
 
     /// `AND( first` lines `)`; the closing parenthesis is in bytes `c..d`.
@@ -121,7 +120,8 @@ impl Context<'_> {
 
     /// A function in formal form; its parentheses are bytes `m..n`.
     pub fn il_function(&self, name: Name, args: Vec<Arg>, m: u32, n: u32) -> Box<IlInst> {
-        Box::new(IlInst::Function { name, args, parens: self.span(m, n) })
+        let callee = Expr { span: name.span, kind: ExprKind::Name(name), depth: 1, parens: false };
+        Box::new(IlInst::Function(Call { callee, args, parens: self.span(m, n) }))
     }
 
     /// A step; its keyword ends at `m`.

@@ -74,7 +74,7 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, pou: PouId, scope: PouId, body: &'a ast
 
 /// The condition of a transition in Instruction List: the statements that compute the current result, and the BOOL that it is
 /// at their end (\[I3\]). Labels are numbered from `labels` on, temporaries are the checker's.
-fn il_condition<'a>(c: &mut Checker<'_, 'a>, _labels: &mut u32, il: &'a ast::IlBody) -> Option<Condition> {
-    c.not_yet(il.span.before(), "a transition in Instruction List");
-    None
+fn il_condition<'a>(c: &mut Checker<'_, 'a>, labels: &mut u32, il: &'a ast::IlBody) -> Option<Condition> {
+    let (stmts, value) = super::il::check_condition(c, il, labels);
+    Some(Condition { stmts, value })
 }
