@@ -152,6 +152,7 @@ fn examples_give_their_traces() {
         ),
         ("alarm", "il", "30", alarm),
         ("alarm", "st", "30", alarm),
+        ("alarm", "sfc", "30", alarm),
     ] {
         let example = project_root().join("examples").join(name);
         let folder = tempfile::tempdir().expect("a folder");
