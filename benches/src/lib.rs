@@ -1,1 +1,1 @@
-//! Benchmarks of plcc; see `cycle_time.rs`. Run with `cargo bench`.
+//! Benchmarks of plcc; see `cycle_time.rs` and `charts.rs`. Run with `cargo bench`.

@@ -87,10 +87,13 @@ impl<'a> Cx<'a> {
     fn resolve_named(&mut self, name: &ast::Name, behind_reference: bool) -> Resolved {
         let plain = |ty| Resolved { ty, init: Init::Default };
         let key = fold(&name.text);
-        if self.builtin_files.contains(&name.span.file)
-            && let Some(&pou) = self.pous.get(&crate::collect::internal_name(&key))
-        {
-            return plain(self.defs.types.intern(Type::Instance(pou)));
+        if self.builtin_files.contains(&name.span.file) {
+            if let Some(&pou) = self.pous.get(&crate::collect::internal_name(&key)) {
+                return plain(self.defs.types.intern(Type::Instance(pou)));
+            }
+            if let Some(elem) = Elem::from_name(&key) {
+                return plain(Types::elem(elem));
+            }
         }
         if let Some(&slot) = self.types.get(&key) {
             return self.resolve_slot(slot, name.span, behind_reference);
@@ -98,6 +101,10 @@ impl<'a> Cx<'a> {
         if let Some(&pou) = self.pous.get(&key) {
             if self.defs.pous[pou].kind == PouKind::FunctionBlock {
                 return plain(self.defs.types.intern(Type::Instance(pou)));
+            }
+            // A function is no type: `TIME` stays one even if somebody wrote his own TIME().
+            if let Some(elem) = Elem::from_name(&key) {
+                return plain(Types::elem(elem));
             }
             let span = self.defs.pous[pou].span;
             self.push(

@@ -11,6 +11,7 @@ use index_vec::IndexVec;
 use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::ops::Op;
+use std::collections::BTreeMap;
 
 /// What the evolution of a chart keeps beside its steps.
 pub(super) struct State {
@@ -38,7 +39,7 @@ pub(super) fn evaluate(w: &mut Writer, chart: &Chart, state: &State, groups: &Gr
         for id in &set {
             condition(w, chart, state, *id, shared, &mut body);
         }
-        choose(chart, state, &set, &mut body);
+        choose(w, chart, state, &set, &mut body);
         match (shared, first) {
             (Some(step), Some(first)) => {
                 grouped.push(groups.of(step), [when(active(chart, step), body, first.span)]);
@@ -87,7 +88,7 @@ fn condition(
 
 /// (5) The choice (\[F4\] \[F5\]): of the transitions of `set` whose conditions count, those that fire. This is the one place
 /// that decides; operator modes will ask here whether the automatic decides at all.
-fn choose(chart: &Chart, state: &State, set: &[TransitionId], out: &mut Vec<Stmt>) {
+fn choose(w: &mut Writer, chart: &Chart, state: &State, set: &[TransitionId], out: &mut Vec<Stmt>) {
     if chart.firing == Firing::Strong {
         for id in set {
             let transition = &chart.transitions[*id];
@@ -98,22 +99,44 @@ fn choose(chart: &Chart, state: &State, set: &[TransitionId], out: &mut Vec<Stmt
             }
         }
     }
-    let mut ranked = set.to_vec();
-    ranked.sort_by_key(|id| chart.rank(*id));
-    for (n, id) in ranked.iter().enumerate() {
-        let transition = &chart.transitions[*id];
-        let before =
-            ranked[..n].iter().filter(|t| chart.transitions[**t].from.iter().any(|s| transition.from.contains(s)));
-        let rivals: Vec<Expr> = before.map(|t| read(state.chosen[*t].clone())).collect();
-        if !rivals.is_empty() {
-            narrow(state, *id, not(any(&rivals, transition.span)), transition.span, out);
-        }
-    }
+    one_per_step(w, chart, state, set, out);
     let Some(first) = set.first() else { return };
     let span = chart.transitions[*first].span;
     let mut fires: Vec<Expr> = vec![read_temp(state.fires, BOOL, span)];
     fires.extend(set.iter().map(|t| read(state.chosen[*t].clone())));
     out.push(assign_temp(state.fires, any(&fires, span), span));
+}
+
+/// A step that several transitions take goes to the first of them by rank (\[F4\]): whoever is chosen, takes its steps away
+/// from those that come later.
+fn one_per_step(w: &mut Writer, chart: &Chart, state: &State, set: &[TransitionId], out: &mut Vec<Stmt>) {
+    let mut takers: BTreeMap<StepId, usize> = BTreeMap::new();
+    for step in set.iter().flat_map(|t| &chart.transitions[*t].from) {
+        *takers.entry(*step).or_default() += 1;
+    }
+    let mut free: BTreeMap<StepId, TempId> = BTreeMap::new();
+    for (step, _) in takers.into_iter().filter(|(_, count)| *count > 1) {
+        let span = chart.steps[step].span;
+        let temp = w.temp(BOOL);
+        out.push(assign_temp(temp, constant(1, BOOL, span), span));
+        free.insert(step, temp);
+    }
+    let mut ranked = set.to_vec();
+    ranked.sort_by_key(|id| chart.rank(*id));
+    for id in ranked {
+        let transition = &chart.transitions[id];
+        let span = transition.span;
+        let shared: Vec<TempId> = transition.from.iter().filter_map(|s| free.get(s).copied()).collect();
+        if shared.is_empty() {
+            continue;
+        }
+        let all_free: Vec<Expr> = shared.iter().map(|t| read_temp(*t, BOOL, span)).collect();
+        narrow(state, id, all(&all_free, span), span, out);
+        for temp in shared {
+            let left = all(&[read_temp(temp, BOOL, span), not(read(state.chosen[id].clone()))], span);
+            out.push(assign_temp(temp, left, span));
+        }
+    }
 }
 
 /// `chosen := chosen AND also`.
