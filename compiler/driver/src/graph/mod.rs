@@ -113,7 +113,8 @@ fn charts(parsed: &Parsed) -> Result<Vec<Named>, Failure> {
 
 fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
     let mut chart = Chart::default();
-    let text = |span: Span| sources.text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+    let lines = |span: Span| plcc_syntax::without_comments(span.file, sources.text(span));
+    let text = |span: Span| lines(span).replace('\n', " ");
     for element in &body.elements {
         let ast::SfcElement::Step(step) = element else { continue };
         let action = |a: &ast::ActionAssociation| Action {
@@ -149,7 +150,7 @@ fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
             priority: transition.priority.as_ref().map(|p| text(p.span)),
             condition: match &transition.condition {
                 ast::Condition::St(e) => text(e.span),
-                ast::Condition::Il(il) => sources.text(il.span).trim().to_string(),
+                ast::Condition::Il(il) => lines(il.span),
             },
             from: steps(&transition.from)?,
             to: steps(&transition.to)?,
