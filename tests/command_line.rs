@@ -294,3 +294,36 @@ fn charts_are_drawn_and_active_steps_marked() {
     assert_eq!(plcc(f.path(), &["graph", "main.st", "--sfc"]).code, 2);
     assert_eq!(plcc(f.path(), &["graph", "lane.st"]).code, 2);
 }
+
+/// `lanes` simultaneous branches of `length` steps; with `mesh`, neighbours can also go on together.
+fn lanes(lanes: usize, length: usize, mesh: bool) -> String {
+    let step = |l: usize, s: usize| format!("L{}_{s}", l % lanes);
+    let all = |s: usize| (0..lanes).map(|l| step(l, s)).collect::<Vec<_>>().join(", ");
+    let mut text = "PROGRAM Main\nVAR_INPUT go : BOOL; END_VAR\nINITIAL_STEP Start: END_STEP\n".to_string();
+    let mut link =
+        |from: String, to: String| text.push_str(&format!("TRANSITION FROM {from} TO {to} := go; END_TRANSITION\n"));
+    link("Start".into(), format!("({})", all(0)));
+    link(format!("({})", all(length - 1)), "Start".into());
+    for l in 0..lanes {
+        for s in 0..length - 1 {
+            link(step(l, s), step(l, s + 1));
+            if mesh && s % 2 == 1 {
+                let pair = |s| format!("({}, {})", step(l, s), step(l + 1, s));
+                link(pair(s), pair(s + 1));
+            }
+        }
+    }
+    let steps = (0..lanes * length).map(|n| format!("STEP {}: END_STEP\n", step(n / length, n % length)));
+    text + &steps.collect::<String>() + "END_PROGRAM\n"
+}
+
+#[test]
+fn large_charts_are_proved_or_said_to_be_not_proved() {
+    let f = folder_with(&[("lanes.st", &lanes(8, 24, false)), ("mesh.st", &lanes(12, 8, true))]);
+    let done = plcc(f.path(), &["check", "lanes.st", "--message-format", "short"]);
+    assert_eq!((done.code, done.stderr.as_str()), (0, ""));
+    let done = plcc(f.path(), &["check", "mesh.st", "--message-format", "short"]);
+    let told =
+        "mesh.st:3:1: warning[W0480]: the structure of this chart is not proved beyond 50001 markings\n1 warning\n";
+    assert_eq!((done.code, done.stderr.as_str()), (0, told));
+}

@@ -76,6 +76,25 @@ pub fn parse_body(
     }
 }
 
+/// A part of a source without its comments and pragmas, for drawings: tokens as written, one blank or line end where there was
+/// any space between them.
+pub fn without_comments(file: FileId, text: &str) -> String {
+    let mut diags = Diagnostics::new();
+    let lexed = lexer::lex(text, &mut Reporter::new(file, &mut diags));
+    let mut out = String::new();
+    let mut end = None;
+    for token in &lexed.tokens {
+        let start = token.start as usize;
+        if let Some(gap) = end.and_then(|end| text.get(end..start)).filter(|gap| !gap.is_empty()) {
+            out.push(if gap.contains('\n') { '\n' } else { ' ' });
+        }
+        let written = token.text(text);
+        out.push_str(written);
+        end = Some(start + written.len());
+    }
+    out
+}
+
 /// The tokens of a source, one line of text per line of the source, for `--emit tokens`.
 pub fn print_tokens(file: FileId, text: &str) -> String {
     let mut diags = Diagnostics::new();

@@ -169,7 +169,7 @@ impl Layout<'_> {
         if self.tree.continues(from, to) && !self.placed.contains(&to) {
             return Way::Goes(to);
         }
-        let open = !self.placed.contains(&to) && self.tree.same_root(from, to) && !self.tree.roots.contains(&to);
+        let open = !self.placed.contains(&to) && self.tree.forward(from, to);
         match open && !self.forced.contains(&(from, to)) {
             true => Way::Meets(to),
             false => Way::Jumps(to),

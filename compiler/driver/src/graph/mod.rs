@@ -82,20 +82,29 @@ struct Named {
 fn charts(parsed: &Parsed) -> Result<Vec<Named>, Failure> {
     let mut found = Vec::new();
     for (_, _, builtin, file) in &parsed.files {
+        if *builtin {
+            continue;
+        }
+        let mut add = |name: String, pou: &str, body: &ast::Body| -> Result<(), Failure> {
+            let ast::Body::Sfc(sfc) = body else { return Ok(()) };
+            found.push(Named { name, pou: pou.to_string(), chart: read(sfc, &parsed.sources)? });
+            Ok(())
+        };
         for item in &file.items {
-            let ast::Item::Pou(pou) = item else { continue };
-            if *builtin {
-                continue;
-            }
-            let mut add = |name: String, body: &ast::Body| -> Result<(), Failure> {
-                let ast::Body::Sfc(sfc) = body else { return Ok(()) };
-                let chart = read(sfc, &parsed.sources)?;
-                found.push(Named { name, pou: pou.name.text.to_string(), chart });
-                Ok(())
-            };
-            add(pou.name.text.to_string(), &pou.body)?;
-            for action in &pou.actions {
-                add(format!("{}.{}", pou.name.text, action.name.text), &action.body)?;
+            match item {
+                ast::Item::Pou(pou) => {
+                    let name = &pou.name.text;
+                    add(name.to_string(), name, &pou.body)?;
+                    for action in &pou.actions {
+                        add(format!("{name}.{}", action.name.text), name, &action.body)?;
+                    }
+                }
+                // Outside of its POU, with the POU in its name.
+                ast::Item::Action(action) => {
+                    let name = &action.name.text;
+                    add(name.to_string(), name.split('.').next().unwrap_or(name), &action.body)?;
+                }
+                _ => {}
             }
         }
     }
@@ -104,7 +113,8 @@ fn charts(parsed: &Parsed) -> Result<Vec<Named>, Failure> {
 
 fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
     let mut chart = Chart::default();
-    let text = |span: Span| sources.text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+    let lines = |span: Span| plcc_syntax::without_comments(span.file, sources.text(span));
+    let text = |span: Span| lines(span).replace('\n', " ");
     for element in &body.elements {
         let ast::SfcElement::Step(step) = element else { continue };
         let action = |a: &ast::ActionAssociation| Action {
@@ -140,7 +150,7 @@ fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
             priority: transition.priority.as_ref().map(|p| text(p.span)),
             condition: match &transition.condition {
                 ast::Condition::St(e) => text(e.span),
-                ast::Condition::Il(il) => sources.text(il.span).trim().to_string(),
+                ast::Condition::Il(il) => lines(il.span),
             },
             from: steps(&transition.from)?,
             to: steps(&transition.to)?,

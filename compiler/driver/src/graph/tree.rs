@@ -1,10 +1,11 @@
 //! The shape of a chart: what encloses what.
 //!
-//! Steps and transitions are the nodes of one graph. A node *dominates* what can be reached through it only. What has one way
-//! to it continues a line; what has several, and is dominated by the node where they part, is where branches meet
-//! again. Links backwards, and across branches, are neither: they are drawn as jumps.
+//! Steps and transitions are the nodes of one graph. Links to what must have been active before are *backwards* and become
+//! jumps. On what is left, a node *dominates* what can be reached through it only. What has one way to it continues a line;
+//! what has several, and is dominated by the node where they part, is where branches meet again.
 
 use super::chart::Chart;
+use std::collections::{BTreeMap, HashSet, VecDeque};
 
 /// Nodes: first the steps, then the transitions.
 pub type Node = usize;
@@ -23,6 +24,27 @@ pub struct Tree {
     parent: Vec<Node>,
     /// Position in an order in which links that are not jumps lead forward.
     order: Vec<usize>,
+    /// What must have been active before a node.
+    back: Vec<Nodes>,
+}
+
+/// A set of nodes, as bits.
+#[derive(Debug, Clone, Default)]
+struct Nodes(Vec<u64>);
+
+impl Nodes {
+    fn has(&self, node: Node) -> bool {
+        self.0.get(node / 64).is_some_and(|word| word >> (node % 64) & 1 == 1)
+    }
+
+    /// These, those, and one more.
+    fn join(&mut self, others: &Nodes, node: Node) {
+        self.0.resize(self.0.len().max(others.0.len()).max(node / 64 + 1), 0);
+        for (word, more) in self.0.iter_mut().zip(&others.0) {
+            *word |= more;
+        }
+        self.0[node / 64] |= 1 << (node % 64);
+    }
 }
 
 impl Tree {
@@ -38,6 +60,7 @@ impl Tree {
             root: vec![usize::MAX; count],
             parent: vec![usize::MAX; count],
             order: vec![usize::MAX; count],
+            back: vec![Nodes::default(); count],
         };
         // From left to right as they are chosen: explicit priorities first (semantics.md [F4]).
         let mut ranked: Vec<usize> = (0..chart.transitions.len()).collect();
@@ -75,39 +98,86 @@ impl Tree {
 
     /// Everything from a root on that no root before it reaches.
     fn grow(&mut self, root: Node) {
+        let before = self.causes(root);
+        for (&node, before) in &before {
+            self.root[node] = root;
+            self.back[node] = before.clone();
+        }
         let reached = self.backwards_finished(root);
         let base = self.order.iter().filter(|&&o| o != usize::MAX).count();
         for (position, &node) in reached.iter().enumerate() {
-            self.root[node] = root;
             self.order[node] = base + position;
         }
+        // Without links back every node comes after all its ways, so one round is enough.
         self.parent[root] = root;
-        // Cooper, Harvey, Kennedy: refine until nothing changes.
+        for &node in &reached[1..] {
+            let preds: Vec<Node> = self.pred[node].iter().copied().filter(|&p| self.forward(p, node)).collect();
+            self.parent[node] = preds.into_iter().reduce(|a, b| self.meet(a, b)).unwrap_or(root);
+        }
+    }
+
+    /// What must have been active before each node that is reached from a root: for a step what led to the transition that
+    /// activates it first, for a transition what led to all its steps.
+    fn causes(&self, root: Node) -> BTreeMap<Node, Nodes> {
+        let mut causes: BTreeMap<Node, Nodes> = BTreeMap::new();
+        let mut todo = VecDeque::from([(root, Nodes::default())]);
+        // Convergences that still wait for a step; if it never comes, they are taken as they are.
+        let mut waiting: Vec<Node> = Vec::new();
         loop {
-            let mut changed = false;
-            for &node in &reached[1..] {
-                let known = |p: &&Node| self.root[**p] == root && self.parent[**p] != usize::MAX;
-                let mut preds = self.pred[node].iter().filter(known);
-                let Some(&first) = preds.next() else { continue };
-                let nearest = preds.fold(first, |a, &b| self.meet(a, b));
-                changed |= self.parent[node] != nearest;
-                self.parent[node] = nearest;
+            let Some((node, own)) = todo.pop_front() else {
+                let Some(position) = waiting.iter().position(|t| !causes.contains_key(t)) else { return causes };
+                let node = waiting.swap_remove(position);
+                todo.push_back((node, self.behind(node, &causes)));
+                continue;
+            };
+            if causes.contains_key(&node) {
+                continue;
             }
-            if !changed {
-                return;
+            causes.insert(node, own);
+            for &next in &self.succ[node] {
+                if self.root[next] != usize::MAX || causes.contains_key(&next) {
+                    continue;
+                }
+                if self.step(next).is_some() {
+                    let mut own = Nodes::default();
+                    own.join(&causes[&node], node);
+                    todo.push_back((next, own));
+                } else if self.pred[next].iter().all(|p| causes.contains_key(p)) {
+                    todo.push_back((next, self.behind(next, &causes)));
+                } else {
+                    waiting.push(next);
+                }
             }
         }
+    }
+
+    /// The causes of a transition, as far as its steps are known.
+    fn behind(&self, transition: Node, causes: &BTreeMap<Node, Nodes>) -> Nodes {
+        let mut all = Nodes::default();
+        for &step in &self.pred[transition] {
+            if let Some(own) = causes.get(&step) {
+                all.join(own, step);
+            }
+        }
+        all
+    }
+
+    /// Whether a link leads on, not back, and stays with its root.
+    pub fn forward(&self, from: Node, to: Node) -> bool {
+        self.same_root(from, to) && self.order[from] < self.order[to] && !self.back[from].has(to)
     }
 
     /// The nodes in reverse order of the end of a depth-first walk; branches keep their order from left to right.
     fn backwards_finished(&mut self, root: Node) -> Vec<Node> {
         let mut done = Vec::new();
         let mut work = vec![(root, 0)];
-        let mut met = std::collections::HashSet::from([root]);
+        let mut met = HashSet::from([root]);
         while let Some((node, skip)) = work.pop() {
             // From right to left, so that the reverse goes from left to right.
             let next = self.succ[node].iter().rev().enumerate().skip(skip);
-            let fresh = next.map(|(i, &n)| (i, n)).find(|(_, n)| self.root[*n] == usize::MAX && !met.contains(n));
+            let fresh = next
+                .map(|(i, &n)| (i, n))
+                .find(|(_, n)| self.root[*n] == root && !met.contains(n) && *n != node && !self.back[node].has(*n));
             match fresh {
                 Some((index, next)) => {
                     met.insert(next);
@@ -153,19 +223,8 @@ impl Tree {
         &self.pred[node]
     }
 
-    /// Whether all ways from the root to `node` lead through `by` (a node dominates itself).
-    pub fn dominates(&self, by: Node, mut node: Node) -> bool {
-        if self.root[by] != self.root[node] {
-            return false;
-        }
-        while self.order[node] > self.order[by] {
-            node = self.parent[node];
-        }
-        node == by
-    }
-
     /// Whether both are drawn from the same root.
-    pub fn same_root(&self, a: Node, b: Node) -> bool {
+    fn same_root(&self, a: Node, b: Node) -> bool {
         self.root[a] == self.root[b]
     }
 
@@ -175,7 +234,7 @@ impl Tree {
         self.parent[node] == from
             && (node < self.steps || self.pred[node].len() == 1)
             && node != self.root[node]
-            && self.pred[node].iter().all(|&p| p == from || self.dominates(node, p) || !self.same_root(p, node))
+            && self.pred[node].iter().all(|&p| p == from || !self.forward(p, node))
     }
 
     /// Where branches that part at `node` meet again, in order.

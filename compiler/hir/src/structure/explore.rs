@@ -129,8 +129,17 @@ const MAX_SETS: usize = 4096;
 /// Edges kept for each marking of the limit.
 const EDGES_PER_MARKING: usize = 32;
 
+/// How exact the marking graph is where a step can be activated while active.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sets {
+    /// All sets of transitions that can fire together are tried.
+    All,
+    /// Single firings only: enough to see that it happens, and for charts in which it does not.
+    Single,
+}
+
 /// Explores breadth first until everything or `limit` markings are known.
-pub(super) fn explore(work: &Work, rule: Rule, limit: usize) -> Graph {
+pub(super) fn explore(work: &Work, rule: Rule, sets: Sets, limit: usize) -> Graph {
     let mut graph = Graph {
         markings: Markings::new(work.steps),
         edges: Vec::new(),
@@ -154,7 +163,7 @@ pub(super) fn explore(work: &Work, rule: Rule, limit: usize) -> Graph {
             .flat_map(|step| by_step[step].iter().copied())
             .filter(|&t| work.transitions[t as usize].enabled(marking, rule))
             .collect();
-        expand(work, rule, &mut graph, next, &enabled);
+        expand(work, rule, sets, &mut graph, next, &enabled);
         graph.first.push(graph.edges.len() as u32);
         next += 1;
     }
@@ -170,7 +179,7 @@ fn candidates(work: &Work) -> Vec<Vec<u32>> {
     by_step
 }
 
-fn expand(work: &Work, rule: Rule, graph: &mut Graph, from: usize, enabled: &[u32]) {
+fn expand(work: &Work, rule: Rule, wanted: Sets, graph: &mut Graph, from: usize, enabled: &[u32]) {
     let transition = |t: &u32| &work.transitions[*t as usize];
     for t in enabled {
         let contact = transition(t).contact(graph.markings.get(from)).is_some();
@@ -181,7 +190,7 @@ fn expand(work: &Work, rule: Rule, graph: &mut Graph, from: usize, enabled: &[u3
         Rule::Weak => enabled.iter().any(|t| transition(t).contact(marking).is_some()),
         Rule::Strong => pairs(work, enabled).any(|(a, b)| a.shared_succeeding(b).is_some()),
     };
-    if !all_sets {
+    if !all_sets || wanted == Sets::Single {
         // The single firings come to the same; only what two set together is to be seen here.
         let together = enabled.iter().enumerate().find_map(|(i, a)| {
             let partner = enabled[i + 1..].iter().find(|b| {

@@ -65,6 +65,7 @@ pub mod text;
 #[cfg(test)]
 mod tests;
 
+use explore::Sets;
 use marking::Bits;
 
 /// How many steps have to be inactive for a transition to fire (semantics.md \[F5\]).
@@ -261,20 +262,20 @@ fn analyse_network(net: &Net, part: &[usize], limits: Limits) -> Report {
 
 fn analyse_by(chart: &Chart, rule: Rule, limits: Limits) -> Report {
     let plain = explore::Work::plain(chart);
-    let graph = explore::explore(&plain, rule, limits.plain);
+    let graph = explore::explore(&plain, rule, Sets::All, limits.plain);
     if graph.complete {
         return findings::complete(chart, &plain, &graph, rule);
     }
     // The reductions keep what the weak rule can do, not what the strong one forbids.
     if rule == Rule::Strong {
-        let graph = explore::explore(&plain, rule, limits.reduced);
+        let graph = explore::explore(&plain, rule, Sets::All, limits.reduced);
         return match graph.complete {
             true => findings::complete(chart, &plain, &graph, rule),
             false => findings::bounded(chart, &plain, &graph),
         };
     }
     let reduced = reduce::reduce(chart);
-    let graph = explore::explore(&reduced, rule, limits.reduced);
+    let graph = explore::explore(&reduced, rule, Sets::Single, limits.reduced);
     match graph.complete && !graph.any_contact() {
         true => findings::complete(chart, &reduced, &graph, rule),
         false => findings::bounded(chart, &reduced, &graph),

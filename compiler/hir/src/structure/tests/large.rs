@@ -99,3 +99,19 @@ fn what_is_too_large_is_said_to_be_not_proved() {
     assert!(matches!(report.proof, Proof::Bounded { markings } if markings > 10_000), "{:?}", report.proof);
     assert_eq!(report.findings, []);
 }
+
+/// Fourteen lanes that all lead to one step: in most markings thousands of sets of transitions can fire.
+#[test]
+fn a_wide_unsafe_chart_is_told_in_bounded_time() {
+    let mut net = lanes(14, 4, line);
+    let join = net.transitions.iter().position(|t| t.name.as_deref() == Some("join")).expect("the convergence");
+    let last = std::mem::take(&mut net.transitions[join].from);
+    net.transitions.remove(join);
+    for step in last {
+        net.transitions.push(Transition { name: None, from: vec![step], to: vec![1] });
+    }
+    let report = report(&net);
+    assert_eq!(report.findings.len(), 1, "{report:?}");
+    assert_eq!(report.findings[0].kind, Kind::ActivatedTwice);
+    assert!(report.findings[0].path.firings.len() < 12);
+}
