@@ -36,7 +36,9 @@ VAR_IN_OUT
 END_VAR
 VAR
   edge : R_TRIG;
+  spare : BOOL;
 END_VAR
+spare := NOT pulse;
 edge(CLK := pulse);
 IF edge.Q THEN
   value := value + 1;
@@ -147,7 +149,7 @@ const MISTAKES: &[Mistake] = &[
         code: "E0101", at: "IF delay.Q THEN", help: "END_IF" },
     Mistake { what: "missing END_FOR", from: "speed;\nEND_FOR;", to: "speed;",
         code: "E0101", at: "FOR i := 1", help: "END_FOR" },
-    Mistake { what: "missing END_VAR", from: "  edge : R_TRIG;\nEND_VAR", to: "  edge : R_TRIG;",
+    Mistake { what: "missing END_VAR", from: "  spare : BOOL;\nEND_VAR", to: "  spare : BOOL;",
         code: "E0101", at: "VAR\n  edge", help: "END_VAR" },
     Mistake { what: "missing END_CASE", from: "  table[3, 1] := -1;\nEND_CASE;", to: "  table[3, 1] := -1;",
         code: "E0101", at: "CASE level OF", help: "END_CASE" },
@@ -201,6 +203,40 @@ const MISTAKES: &[Mistake] = &[
         code: "E0125", at: "END_FRO", help: "`END_FOR`" },
     Mistake { what: "a misspelt VAR_INPUT", from: "VAR_INPUT\n  start", to: "VAR_INPTU\n  start",
         code: "E0125", at: "VAR_INPTU", help: "`VAR_INPUT`" },
+    Mistake { what: "missing IF", from: "IF delay.Q THEN", to: "delay.Q THEN",
+        code: "E0115", at: "delay.Q THEN", help: "`IF`" },
+    Mistake { what: "missing FOR", from: "FOR i := 1", to: "i := 1",
+        code: "E0115", at: "i := 1 TO", help: "`FOR`" },
+    Mistake { what: "missing CASE", from: "CASE level OF", to: "level OF",
+        code: "E0115", at: "level OF", help: "`CASE`" },
+    Mistake { what: "a doubled IF", from: "IF delay.Q THEN", to: "IF IF delay.Q THEN",
+        code: "E0117", at: "IF IF", help: "remove" },
+    Mistake { what: "missing VAR_INPUT", from: "VAR_INPUT\n  start : BOOL;", to: "  start : BOOL;",
+        code: "E0115", at: "start : BOOL", help: "VAR_INPUT" },
+    Mistake { what: "missing VAR before CONSTANT", from: "VAR CONSTANT\n", to: "CONSTANT\n",
+        code: "E0115", at: "CONSTANT\n", help: "VAR" },
+    Mistake { what: "a word too many behind PROGRAM", from: "PROGRAM Main\n", to: "PROGRAM Main Station\n",
+        code: "E0117", at: "Main Station", help: "remove" },
+    Mistake { what: "missing `:` behind a CASE label", from: "  Run:\n", to: "  Run\n",
+        code: "E0115", at: "  Run\n", help: "`:`" },
+    Mistake { what: "missing `;` before a structure", from: "(Idle, Run, Fault);", to: "(Idle, Run, Fault)",
+        code: "E0114", at: "(Idle, Run, Fault)", help: "`;`" },
+    Mistake { what: "an enumeration without its parenthesis", from: "Mode : (Idle", to: "Mode : Idle",
+        code: "E0117", at: "Mode : Idle", help: "parentheses" },
+    Mistake { what: "a declaration without its name", from: "  spare : BOOL;\nEND_VAR\nspare := NOT pulse;\n", to: "  : BOOL;\nEND_VAR\n",
+        code: "E0117", at: "  : BOOL;", help: "`name : type;`" },
+    Mistake { what: "missing type of a constant", from: "COUNT : INT := 4;", to: "COUNT := 4;",
+        code: "E0116", at: "COUNT := 4", help: "`COUNT : INT`" },
+    Mistake { what: "missing value of a constant", from: "COUNT : INT := 4;", to: "COUNT : INT := ;",
+        code: "E0116", at: "COUNT : INT := ;", help: "literal" },
+    Mistake { what: "a section behind the first statement, with its uses", from: "  lamp : BOOL;\nEND_VAR\n", to: "END_VAR\ntotal := 0;\nVAR lamp : BOOL; END_VAR\n",
+        code: "E0120", at: "VAR lamp", help: "before the body" },
+    Mistake { what: "missing PROGRAM", from: "PROGRAM Main\n", to: "Main\n",
+        code: "E0119", at: "Main\n", help: "PROGRAM" },
+    Mistake { what: "missing `,` between arguments", from: "raw := level, gain", to: "raw := level gain",
+        code: "E0115", at: "level gain", help: "," },
+    Mistake { what: "missing `:=` in an assignment", from: "lamp := counter.done", to: "lamp counter.done",
+        code: "E0114", at: "lamp counter", help: "`;`" },
     Mistake { what: "`=` for `:=`", from: "mode := Fault", to: "mode = Fault",
         code: "E0113", at: "mode = Fault", help: ":=" },
     Mistake { what: "`==` for `=`", from: "level > HIGH AND", to: "level == HIGH AND",
@@ -401,4 +437,40 @@ fn each_mistake_gives_one_message_at_its_line_with_help() {
     assert!(MISTAKES.len() >= 40);
     let wrong: Vec<String> = MISTAKES.iter().filter_map(|m| judge(m).err()).collect();
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), MISTAKES.len(), wrong.join(""));
+}
+
+/// Words and signs of a text.
+fn tokens(text: &str) -> Vec<std::ops::Range<usize>> {
+    let word = |b: u8| b.is_ascii_alphanumeric() || b == b'_' || b == b'#';
+    let bytes = text.as_bytes();
+    let mut out: Vec<std::ops::Range<usize>> = Vec::new();
+    for (i, byte) in bytes.iter().enumerate().filter(|(_, b)| !b.is_ascii_whitespace()) {
+        match out.last_mut().filter(|t| t.end == i) {
+            Some(last) if word(*byte) && word(bytes[i - 1]) => last.end += 1,
+            Some(last) if [":=", "..", "<=", ">=", "<>", "=>"].contains(&&text[last.start..=i]) => last.end += 1,
+            _ => out.push(i..i + 1),
+        }
+    }
+    out
+}
+
+/// Slips at every place: a word or sign that is left out or written twice. Most give one message, none a flood.
+#[test]
+fn a_slip_anywhere_gives_few_messages() {
+    let (mut all, mut more) = (0, Vec::new());
+    for t in tokens(CORRECT) {
+        let left_out = format!("{} {}", &CORRECT[..t.start], &CORRECT[t.end..]);
+        let twice = format!("{} {}", &CORRECT[..t.end], &CORRECT[t.start..]);
+        for (how, text) in [("without", left_out), ("twice", twice)] {
+            let (_, diags, _) = diagnose(&text, Profile::Strict);
+            let messages = diags.sorted().len();
+            let place = line(CORRECT, t.start);
+            assert!(messages <= 4, "line {place}, {how} `{}`: {messages} messages", &CORRECT[t.clone()]);
+            all += 1;
+            if messages > 1 {
+                more.push(format!("line {place}, {how} `{}`: {messages}", &CORRECT[t.clone()]));
+            }
+        }
+    }
+    assert!(more.len() * 100 <= all * 8, "{} of {all} slips give several messages:\n{}", more.len(), more.join("\n"));
 }

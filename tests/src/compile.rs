@@ -5,6 +5,8 @@ use plcc_hir::{Checked, Profile, Selection, Unit};
 use plcc_mir::ir::Program;
 use plcc_mir::layout::Layout;
 use plcc_mir::lower::Checks;
+use plcc_syntax::ast;
+use std::sync::OnceLock;
 
 /// Messages of errors, one line each.
 fn errors(diags: &Diagnostics, sources: &SourceMap) -> String {
@@ -23,18 +25,21 @@ pub fn check(text: &str, profile: Profile) -> Result<Checked, String> {
 pub fn diagnose(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMap) {
     let mut sources = SourceMap::new();
     let mut diags = Diagnostics::new();
-    let mut files = Vec::new();
-    for (name, text) in plcc_stdlib::blocks::blocks() {
-        let id = sources.add_builtin(*name, *text);
-        files.push((id, Profile::Strict, true, plcc_syntax::parse_file(id, text, Profile::Strict, &mut diags)));
-    }
+    // The standard blocks come first and have the same numbers each time.
+    let standard: Vec<_> = plcc_stdlib::blocks::blocks().iter().map(|(n, t)| sources.add_builtin(*n, *t)).collect();
+    static PARSED: OnceLock<Vec<ast::File>> = OnceLock::new();
+    let blocks = plcc_stdlib::blocks::blocks().iter().zip(&standard);
+    let parsed = PARSED.get_or_init(|| {
+        blocks.map(|((_, t), id)| plcc_syntax::parse_file(*id, t, Profile::Strict, &mut Diagnostics::new())).collect()
+    });
     let id = sources.add("program.st", text);
-    files.push((id, profile, false, plcc_syntax::parse_file(id, text, profile, &mut diags)));
-    let units: Vec<Unit> = files
-        .iter()
-        .map(|(file, profile, builtin, ast)| Unit { file: *file, ast, profile: *profile, builtin: *builtin })
-        .collect();
+    let program = plcc_syntax::parse_file(id, text, profile, &mut diags);
+    let builtin = standard.iter().zip(parsed);
+    let mut units: Vec<Unit> =
+        builtin.map(|(file, ast)| Unit { file: *file, ast, profile: Profile::Strict, builtin: true }).collect();
+    units.push(Unit { file: id, ast: &program, profile, builtin: false });
     let checked = plcc_hir::check(&units, &Selection::default(), &mut diags);
+    plcc_hir::chart_structure::check(&checked.defs, &mut diags);
     (checked, diags, sources)
 }
 

@@ -93,6 +93,12 @@ impl Diagnostics {
         self.list.push(diagnostic);
     }
 
+    /// Keeps only some messages.
+    pub fn retain(&mut self, keep: impl FnMut(&Diagnostic) -> bool) {
+        self.list.retain(keep);
+        self.errors = self.list.iter().filter(|d| d.severity() == Severity::Error).count();
+    }
+
     /// Adds all messages of another list.
     pub fn append(&mut self, other: Diagnostics) {
         self.errors += other.errors;

@@ -20,6 +20,7 @@ mod consts;
 mod cx;
 mod cycles;
 pub mod defs;
+mod doubt;
 mod edges;
 mod expr;
 mod foreign_code;
@@ -85,6 +86,12 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     references::spread_addresses(&mut cx.defs);
     lints::run(&mut cx, units);
     let app = config::configure(&mut cx, units, selection);
+    let doubtful = doubt::Doubtful::of(units);
+    // Only behind a message of the parser: some error must remain.
+    if !cx.half_read.is_empty() && !doubtful.is_empty() {
+        cx.codesys_only = 0;
+        cx.diags.retain(|d| !doubtful.touches(d.primary.span));
+    }
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }
 }

@@ -22,6 +22,8 @@ use plcc_diag::codes;
 const MAX_BLOCKS: usize = 200;
 /// How deep parentheses and brackets may nest.
 const MAX_PARENS: u32 = 1000;
+/// How often a file is searched for what explains a mistake.
+const MAX_LOOKS: u32 = 200;
 
 /// The items of a file. Each slice starts with `StartItem` and is balanced.
 pub fn split(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) -> Vec<Vec<Token>> {
@@ -205,6 +207,8 @@ struct Blocks<'a, 'd> {
     bare_ends: Vec<Token>,
     /// A `;` behind an instruction of IL was reported: once per file.
     told_semicolon: bool,
+    /// How often the file may still be searched for what explains a mistake.
+    looks: u32,
 }
 
 impl<'a, 'd> Blocks<'a, 'd> {
@@ -224,6 +228,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
             next_end_var: 0,
             bare_ends: Vec::new(),
             told_semicolon: false,
+            looks: MAX_LOOKS,
         }
     }
 
@@ -472,7 +477,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
 
     /// One hint for all END words of the file that lack the `;` of the standard.
     fn hint_semicolons(&mut self) {
-        if self.profile == Profile::Strict && !self.bare_ends.is_empty() {
+        if self.profile == Profile::Strict && !self.bare_ends.is_empty() && !self.report.is_used() {
             let t = self.bare_ends[0];
             let more = match self.bare_ends.len() - 1 {
                 0 => String::new(),

@@ -45,7 +45,7 @@ pub fn parse_file(file: FileId, text: &str, profile: Profile, diags: &mut Diagno
             items.push(*item);
         }
     }
-    ast::File { items, pragmas: lexed.pragmas }
+    ast::File { items, pragmas: lexed.pragmas, doubtful: report.doubtful(text, &lexed.tokens) }
 }
 
 /// Parses an expression that stands alone, such as a watch. `None` if it is none; reported then.

@@ -44,6 +44,7 @@ pub fn parse(cx: &Context, tokens: Vec<Token>, report: &mut Reporter) -> Option<
         work += refused.at + 1;
         // Nobody would read what comes of it.
         if last_resort || recovery.report.is_full() {
+            recovery.lose(0..recovery.tokens.len());
             return None;
         }
         let spent = recovery.messages >= MAX_MESSAGES || work > MAX_WORK;
@@ -53,6 +54,7 @@ pub fn parse(cx: &Context, tokens: Vec<Token>, report: &mut Reporter) -> Option<
         if spent || !recovery.mend(&refused) {
             last_resort = true;
             if !recovery.cut_body() {
+                recovery.lose(0..recovery.tokens.len());
                 return None;
             }
         }
@@ -131,6 +133,7 @@ impl Recovery<'_, '_> {
             if attempts == 0 && !told {
                 self.say(message);
             }
+            self.doubt(refused.at, &segment);
             return true;
         }
         if attempts == 0 && !told {

@@ -1,7 +1,9 @@
 //! Where the passes of this crate put their messages: bounded per file, so that a file which is no source at all does not
 //! print a million lines.
 
+use crate::token::{Tok, Token};
 use plcc_diag::{Code, Diagnostic, Diagnostics, FileId, Span, codes};
+use rustc_hash::FxHashSet;
 
 /// Syntax errors of one file that are printed.
 const MAX_MESSAGES: usize = 200;
@@ -11,12 +13,16 @@ pub struct Reporter<'d> {
     file: FileId,
     diags: &'d mut Diagnostics,
     left: usize,
+    /// Statements and declarations that were mended by a guess.
+    doubtful: Vec<Span>,
+    /// Names, in upper case, of declarations that could not be read.
+    lost: FxHashSet<String>,
 }
 
 impl<'d> Reporter<'d> {
     /// For `file`, into `diags`.
     pub fn new(file: FileId, diags: &'d mut Diagnostics) -> Self {
-        Self { file, diags, left: MAX_MESSAGES }
+        Self { file, diags, left: MAX_MESSAGES, doubtful: Vec::new(), lost: FxHashSet::default() }
     }
 
     /// Bytes `start..end` of the file.
@@ -32,6 +38,32 @@ impl<'d> Reporter<'d> {
     /// Whether further messages are dropped.
     pub fn is_full(&self) -> bool {
         self.left == 0
+    }
+
+    /// Bytes `start..end` were mended by a guess.
+    pub fn doubt(&mut self, start: u32, end: u32) {
+        self.doubtful.push(self.span(start, end));
+    }
+
+    /// A declaration that may have been that of `name` could not be read.
+    pub fn lose(&mut self, name: &str) {
+        self.lost.insert(name.to_ascii_uppercase());
+    }
+
+    /// Whether any message was given.
+    pub fn is_used(&self) -> bool {
+        self.left < MAX_MESSAGES
+    }
+
+    /// Where no further mistakes should be looked for: what was mended by a guess, and the uses of lost names.
+    pub fn doubtful(self, text: &str, tokens: &[Token]) -> Vec<Span> {
+        let mut out = self.doubtful;
+        if !self.lost.is_empty() {
+            let names = tokens.iter().filter(|t| t.kind == Tok::Id);
+            let lost = names.filter(|t| self.lost.contains(&t.text(text).to_ascii_uppercase()));
+            out.extend(lost.map(|t| Span::new(self.file, t.start, t.end)));
+        }
+        out
     }
 
     /// Adds a message, unless the file has had its share.

@@ -46,6 +46,9 @@ pub struct File {
     pub items: Vec<Item>,
     /// All pragmas of the file, in order; they may stand between any two tokens.
     pub pragmas: Vec<Pragma>,
+    /// Behind a mistake of syntax: statements that were mended by a guess, and uses of names whose declaration could not be
+    /// read. A further message about them would not be a further mistake.
+    pub doubtful: Vec<Span>,
 }
 
 /// A top-level declaration.

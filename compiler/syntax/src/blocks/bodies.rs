@@ -173,10 +173,27 @@ impl Blocks<'_, '_> {
                     frame.has_of = true;
                     return self.take(Tok::CaseOf);
                 }
+                self.missing_opener(Tok::Of);
+                if let Some(frame) = self.stack.last_mut()
+                    && frame.block == Construct::Case
+                    && !frame.has_of
+                {
+                    frame.has_of = true;
+                    return self.take(Tok::CaseOf);
+                }
             }
             Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.late_section(t),
+            Tok::Then | Tok::Do => self.missing_opener(t.kind),
             kind => {
                 if let Some(block) = Construct::statement(kind) {
+                    if self.peek(1).kind == kind {
+                        let message = format!("{} stands twice", kind.describe());
+                        self.report.push(
+                            self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove one of them"),
+                        );
+                        self.at += 1;
+                        return;
+                    }
                     // A condition of a transition has no statements.
                     return self.open(block, kind);
                 }
@@ -202,6 +219,36 @@ impl Blocks<'_, '_> {
             }
         }
         self.take(Tok::Id);
+    }
+
+    /// THEN, DO or OF comes next: the statement must have begun with its word, which is inserted if its END word is there.
+    fn missing_opener(&mut self, word: Tok) {
+        use Tok::*;
+        let ends = |k: Tok| matches!(k, Semi | Then | Do | CaseOf | Else | Repeat | BodySt | Colon);
+        let start = self.out.iter().rposition(|t| ends(t.kind)).map_or(0, |i| i + 1);
+        let Some(first) = self.out.get(start).copied() else { return };
+        let segment = &self.out[start..];
+        let opens = |t: &Token| matches!(t.kind, If | Elsif | For | While | Case | Until);
+        if segment.iter().any(opens) || first.is_inserted() || self.looks == 0 {
+            return;
+        }
+        let (kind, block) = match word {
+            Then => (If, Construct::If),
+            Of => (Case, Construct::Case),
+            _ if segment.iter().any(|t| t.kind == Assign) => (For, Construct::For),
+            _ => (While, Construct::While),
+        };
+        // There must be one END word more than those that the open constructs need.
+        self.looks -= 1;
+        let open = self.stack.iter().rev().take_while(|f| f.block.is_statement()).filter(|f| f.block == block).count();
+        if !self.closers_ahead(block, open + 1) {
+            return;
+        }
+        let message = format!("{} is missing before this", kind.describe());
+        let help = format!("write `{}`", kind.describe());
+        self.report.push(self.report.at(codes::MISSING_WORD, first.start, first.end, message).help(help));
+        self.stack.push(super::Frame::new(block, first, None, None));
+        self.out.insert(start, Token::inserted(kind, first.start));
     }
 
     /// A word one letter away from one that opens a statement (or is ELSIF), before something that cannot follow a name.
@@ -262,7 +309,11 @@ impl Blocks<'_, '_> {
                 .help("all sections of variables stand before the body"),
         );
         while self.at < self.tokens.len() {
-            let kind = self.peek(0).kind;
+            let t = self.peek(0);
+            let kind = t.kind;
+            if kind == Tok::Id {
+                self.report.lose(t.text(self.text));
+            }
             if kind == Tok::EndVar {
                 self.at += 1;
                 if self.peek(0).kind == Tok::Semi {

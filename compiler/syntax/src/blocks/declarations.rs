@@ -49,9 +49,21 @@ impl Blocks<'_, '_> {
                 self.result_type();
             }
         }
+        self.junk_behind_name();
         if self.peek(0).kind == Tok::Semi {
             self.at += 1;
         }
+    }
+
+    /// A further word on the line of a POU's name.
+    fn junk_behind_name(&mut self) {
+        let (t, next) = (self.peek(0), self.peek(1));
+        if t.kind != Tok::Id || t.first || !(next.first || next.kind == Tok::Var) {
+            return;
+        }
+        let message = format!("`{}` does not belong behind the name", t.text(self.text));
+        self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it"));
+        self.at += 1;
     }
 
     /// Emits the tokens of one type, as far as the body could be mistaken for its continuation.
@@ -119,7 +131,7 @@ impl Blocks<'_, '_> {
         match t.kind {
             Tok::Var | Tok::VarConfig | Tok::VarAccess if self.top() != Some(Construct::Action) => self.open_section(),
             Tok::Id if self.unsupported() => {}
-            Tok::Id if self.misspelled_section(t) => {}
+            Tok::Id if self.misspelled_section(t) || self.headless_section(t) => {}
             _ => self.start_body(),
         }
     }
@@ -140,6 +152,40 @@ impl Blocks<'_, '_> {
                 .help(format!("did you mean `{meant}`?")),
         );
         self.open(Construct::Var, Tok::Var);
+        true
+    }
+
+    /// Declarations up to an END_VAR whose VAR is missing.
+    fn headless_section(&mut self, t: Token) -> bool {
+        let qualifier = QUALIFIERS.iter().any(|q| self.is(0, q)) && self.peek(1).first;
+        let declares =
+            self.peek(1).kind == Tok::Colon && matches!(self.peek(2).kind, Tok::Id | Tok::Array | Tok::Struct);
+        if !t.first || !(declares || qualifier) || self.looks == 0 {
+            return false;
+        }
+        self.looks -= 1;
+        let statement = |t: &Token| {
+            matches!(t.kind, Tok::EndVar | Tok::Var)
+                || Construct::statement(t.kind).is_some()
+                || Construct::closed_by(t.kind).is_some_and(Construct::is_pou)
+        };
+        if self.tokens[self.at..].iter().find(|t| statement(t)).is_none_or(|t| t.kind != Tok::EndVar) {
+            return false;
+        }
+        self.report.push(
+            self.report
+                .at(codes::MISSING_WORD, t.start, t.end, "VAR is missing before this declaration")
+                .help("write VAR, VAR_INPUT, VAR_OUTPUT ... before the variables"),
+        );
+        // Which section it was is not known: nothing is said about uses of its names.
+        let names = self.tokens[self.at..].iter().take_while(|t| t.kind != Tok::EndVar);
+        names.filter(|t| t.kind == Tok::Id).for_each(|t| self.report.lose(t.text(self.text)));
+        let inserted = Token::inserted(Tok::Var, t.start);
+        self.stack.push(super::Frame::new(Construct::Var, inserted, None, None));
+        self.emit(inserted);
+        while QUALIFIERS.iter().any(|q| self.is(0, q)) && self.peek(1).kind != Tok::Colon {
+            self.take(Tok::Qualifier);
+        }
         true
     }
 

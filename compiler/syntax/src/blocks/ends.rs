@@ -48,7 +48,11 @@ impl Blocks<'_, '_> {
 
     /// Whether the innermost construct, a `block`, has its END word further on.
     fn closer_ahead(&self, block: Construct) -> bool {
-        let mut depth = 1;
+        self.closers_ahead(block, 1)
+    }
+
+    /// Whether `depth` constructs of the kind `block` have their END words further on.
+    pub(super) fn closers_ahead(&self, block: Construct, mut depth: usize) -> bool {
         for t in self.tokens[self.at + 1..].iter().take(MAX_LOOK) {
             if Construct::statement(t.kind) == Some(block) {
                 depth += 1;

@@ -10,6 +10,8 @@ impl Blocks<'_, '_> {
         let t = self.peek(0);
         match t.kind {
             Tok::Semi => self.at += 1,
+            // A section of a POU whose head could not be read.
+            Tok::Var if self.lost && !t.text(self.text).eq_ignore_ascii_case("VAR_GLOBAL") => self.outside(t),
             Tok::Var | Tok::VarConfig | Tok::VarAccess => {
                 self.begin_item();
                 self.open_section();
@@ -31,6 +33,9 @@ impl Blocks<'_, '_> {
     /// Something that cannot stand between items; what follows belongs to the same mistake.
     fn outside(&mut self, t: Token) {
         self.at += 1;
+        if t.kind == Tok::Id {
+            self.report.lose(t.text(self.text));
+        }
         if std::mem::replace(&mut self.lost, true) {
             return;
         }

@@ -15,6 +15,9 @@ impl Recovery<'_, '_> {
             .or_else(|| self.reserved_word(refused))
             .or_else(|| self.branch_word(refused))
             .or_else(|| self.block_word(refused, segment))
+            .or_else(|| self.nameless(refused, segment))
+            .or_else(|| self.type_on_next_line(refused, segment))
+            .or_else(|| self.case_label(refused, segment))
             .or_else(|| self.colon(refused, segment))
             .or_else(|| self.operand(refused))
             .or_else(|| self.closing(refused, segment))
@@ -182,6 +185,63 @@ impl Recovery<'_, '_> {
         self.report.at(codes::MISSPELLED, t.start, t.end, message).help(format!("did you mean `{meant}`?"))
     }
 
+    /// A declaration that begins with its `:`.
+    fn nameless(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let declares = self.surroundings(at) == Surroundings::Declarations && at == segment.start;
+        if !declares || self.kind(at) != Tok::Colon || segment.is_empty() {
+            return None;
+        }
+        let (start, end) = self.bytes(at);
+        let message = self.report.at(codes::UNEXPECTED, start, end, "a name is missing before `:`");
+        self.give_up(refused, segment).then(|| message.help("a declaration is written `name : type;`"))
+    }
+
+    /// `Mode : (Idle, Run)` without `;` before `Motor : STRUCT`: the next name was read as part of the type.
+    fn type_on_next_line(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let name = at.checked_sub(1).filter(|i| *i > segment.start)?;
+        let declares = self.surroundings(at) == Surroundings::Declarations;
+        let colon_before = self.tokens[segment.start..name].iter().any(|t| t.kind == Tok::Colon);
+        let begins = self.kind(name) == Tok::Id && self.tokens[name].first;
+        if !(declares && colon_before && begins && matches!(self.kind(at), Tok::Colon | Tok::Comma)) {
+            return None;
+        }
+        let message = self.missing(codes::MISSING_SEMICOLON, name, "`;` expected after this declaration");
+        self.insert(name, Tok::Semi);
+        Some(message.help("write `;`"))
+    }
+
+    /// The `:` behind the values of a CASE branch: they stand alone on their line.
+    fn case_label(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let values = self.tokens.get(segment.start..at).filter(|v| !v.is_empty())?;
+        let plain = |k| matches!(k, Tok::Id | Tok::Int | Tok::Lit | Tok::Qualified | Tok::DotDot | Tok::Comma);
+        let alone = self.begins_line(segment.start) && self.begins_line(at) && values.iter().all(|t| plain(t.kind));
+        if !alone || !refused.wants(":") || !self.in_case(segment.start) {
+            return None;
+        }
+        let message = self.missing(codes::MISSING_WORD, at, "`:` is missing behind this CASE label");
+        self.insert(at, Tok::Colon);
+        Some(message.help("write `:`"))
+    }
+
+    /// Whether the innermost open statement around `at` is a CASE.
+    fn in_case(&self, at: usize) -> bool {
+        let mut depth = 0usize;
+        for t in self.tokens[..at.min(self.tokens.len())].iter().rev() {
+            match t.kind {
+                Tok::EndIf | Tok::EndFor | Tok::EndWhile | Tok::EndRepeat | Tok::EndCase => depth += 1,
+                Tok::BodySt => return false,
+                Tok::If | Tok::For | Tok::While | Tok::Repeat | Tok::Case if depth > 0 => depth -= 1,
+                Tok::Case => return true,
+                Tok::If | Tok::For | Tok::While | Tok::Repeat => return false,
+                _ => {}
+            }
+        }
+        false
+    }
+
     /// `:` and the type in a declaration, `:` behind a label or the name of a step.
     fn colon(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
         let at = refused.at;
@@ -283,10 +343,7 @@ impl Recovery<'_, '_> {
                 return None;
             }
         }
-        if self.unclear_end(refused.at, segment) {
-            // Nothing is known about the operands then: a guess would be judged by its types and give a second message.
-            self.give_up_before(at, segment);
-        } else if matches!(kind, Tok::RBracket | Tok::RParen) {
+        if matches!(kind, Tok::RBracket | Tok::RParen) {
             // A closing sign of the other kind: taken for the right one if that one does not follow.
             self.tokens[at].kind = close;
         } else {
@@ -296,18 +353,6 @@ impl Recovery<'_, '_> {
             }
         }
         Some(message.help(format!("write `{sign}`")))
-    }
-
-    /// Whether a subscript or the arguments of a function are open at the end of their statement, or before its `:=`: the
-    /// closing sign may have been meant at any operator before.
-    fn unclear_end(&self, at: usize, segment: &Range<usize>) -> bool {
-        let Some(open) = self.opener(at) else { return false };
-        let call = self.kind(open.wrapping_sub(1)) == Tok::Id && open > segment.start + 1;
-        let ends = self.kind(at) == Tok::Semi || self.begins_line(at);
-        let goes_on = self.kind(at) == Tok::Assign && !self.tokens[at..segment.end].iter().any(|t| t.first);
-        (call || self.kind(open) == Tok::LBracket)
-            && (ends || goes_on)
-            && self.surroundings(at) == Surroundings::Statements
     }
 
     /// Whether more parentheses close than open in `range`.
@@ -367,6 +412,8 @@ impl Recovery<'_, '_> {
         }
         let new_statement = kind == Tok::Id
             && matches!(next, Tok::Assign | Tok::LParen | Tok::Dot | Tok::LBracket | Tok::Colon | Tok::Caret);
+        let declaration = matches!(self.surroundings(at), Surroundings::Declarations | Surroundings::Resource);
+        let new_statement = new_statement && (!declaration || next == Tok::Colon);
         let ends = is_end(kind)
             || is_boundary(kind) && !matches!(kind, Tok::Then | Tok::Do | Tok::CaseOf | Tok::Qualifier)
             || kind == Tok::Jmp
@@ -375,7 +422,6 @@ impl Recovery<'_, '_> {
         if !ends {
             return None;
         }
-        let declaration = matches!(self.surroundings(at), Surroundings::Declarations | Surroundings::Resource);
         let what = if declaration { "declaration" } else { "statement" };
         let message =
             self.missing(codes::MISSING_SEMICOLON, at, format!("`;` expected after this {what}")).help("write `;`");

@@ -128,6 +128,7 @@ impl Recovery<'_, '_> {
                     Some(n) if segment.start + n < refused.at => segment.start + n + 1,
                     _ => segment.start,
                 };
+                self.lose(segment.clone());
                 self.replace(from..segment.end, boundary != Tok::Semi);
             }
             Surroundings::Il => {
@@ -173,10 +174,37 @@ impl Recovery<'_, '_> {
         true
     }
 
-    /// Puts `Bad` in place of the statement whose end is at `at`, or with which `:=` there goes on.
-    pub(super) fn give_up_before(&mut self, at: usize, segment: &Range<usize>) {
-        let end = if self.kind(at) == Tok::Assign { segment.end } else { at };
-        self.replace(segment.start..end, self.kind(end) != Tok::Semi);
+    /// Names in tokens that are given up are not known any more.
+    pub(super) fn lose(&mut self, range: Range<usize>) {
+        for t in &self.tokens[range] {
+            if t.kind == Tok::Id {
+                self.report.lose(t.text(self.text));
+            }
+        }
+    }
+
+    /// A mend at `at` that is only a guess: what it makes of the segment, up to the end of its line, is not judged.
+    pub(super) fn doubt(&mut self, at: usize, segment: &Range<usize>) {
+        let guess = match self.kind(at) {
+            Tok::RParen | Tok::RBracket | Tok::Comma | Tok::Bad => true,
+            // In the middle of a line something else may be missing.
+            Tok::Semi | Tok::Colon => {
+                self.tokens.get(at + 1).is_some_and(|t| !t.first && !t.is_inserted() && !is_boundary(t.kind))
+            }
+            _ => false,
+        };
+        if !guess {
+            return;
+        }
+        // The mend may have made the segment longer by a token.
+        let end = (segment.end + 1).min(self.tokens.len());
+        let line = self.tokens[at..end].iter().skip(1).position(|t| t.first).map_or(end, |n| at + 1 + n);
+        let (start, _) = self.bytes(segment.start);
+        let (_, last) = self.bytes(line.saturating_sub(1));
+        self.report.doubt(start, last.max(start));
+        if self.surroundings(segment.start) == Surroundings::Declarations {
+            self.lose(segment.start..line);
+        }
     }
 
     /// One `Bad` (and a `;`) for many tokens.

@@ -1,5 +1,6 @@
 //! What a message says: classes of expectation, never a list of tokens.
 
+use super::segment::Surroundings;
 use super::{Recovery, Refused};
 use crate::token::{Tok, word_kind};
 use plcc_diag::{Diagnostic, codes};
@@ -19,6 +20,9 @@ impl Recovery<'_, '_> {
             None => format!("{found} cannot stand here"),
         };
         let mut diagnostic = self.report.at(codes::UNEXPECTED, start, end, message);
+        if self.kind(refused.at) == Tok::Comma && self.surroundings(refused.at) == Surroundings::Declarations {
+            diagnostic = diagnostic.help("the values of an enumeration stand in parentheses: `(Red, Green)`");
+        }
         let t = self.tokens.get(refused.at);
         let word = t.map_or("", |t| t.text(self.text));
         if !word.is_empty() && word_kind(word).is_reserved() && refused.wants("name") && !refused.wants("IF") {
