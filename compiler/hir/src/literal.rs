@@ -99,7 +99,7 @@ impl Checker<'_, '_> {
         };
         let message = format!("a STRING cannot hold `{other}`, only Latin-1; `?` stands in its place");
         self.report(Diagnostic::new(codes::LAX_CONVERSION, span, message).help("write it in \"...\", a WSTRING"));
-        Cow::Owned(text.chars().map(|c| if u32::from(c) > 0xFF { '?' } else { c }).collect())
+        Cow::Owned(question_marks(text))
     }
 
     fn string(&mut self, literal: &Literal, typed: Option<TypeId>, span: Span, want: Option<TypeId>) -> Operand {
@@ -109,13 +109,20 @@ impl Checker<'_, '_> {
         let (units, kind) = if wide {
             match text::wstring(&literal.text, nul) {
                 Ok(s) => (s.clone(), ExprKind::WString(s)),
-                Err(e) => return self.bad(&e, span),
+                Err(e) => {
+                    self.cx.codesys_only += usize::from(text::wstring(&literal.text, Nul::Ends).is_ok());
+                    return self.bad(&e, span);
+                }
             }
         } else {
             let latin1 = self.latin1(&literal.text, span);
             match text::string(&latin1, nul) {
                 Ok(s) => (s.iter().map(|b| u16::from(*b)).collect(), ExprKind::String(s)),
-                Err(e) => return self.bad(&e, span),
+                Err(e) => {
+                    let lax = text::string(&question_marks(&literal.text), Nul::Ends);
+                    self.cx.codesys_only += usize::from(lax.is_ok());
+                    return self.bad(&e, span);
+                }
             }
         };
         if let (Some(elem), [one]) = (place, units.as_slice()) {
@@ -124,4 +131,9 @@ impl Checker<'_, '_> {
         let ty = self.cx.defs.types.intern(Type::String { wide, capacity: (units.len() as u32).max(1) });
         Operand::value(kind, ty, span)
     }
+}
+
+/// The text with `?` for each character that a STRING cannot hold.
+fn question_marks(text: &str) -> String {
+    text.chars().map(|c| if u32::from(c) > 0xFF { '?' } else { c }).collect()
 }

@@ -437,17 +437,22 @@ impl<'a> Checker<'_, 'a> {
         Some((elems[0], elems[1]))
     }
 
-    /// The type of an operation between a value and an untyped constant.
-    pub fn beside_constant(&self, elem: Elem, constant: &Operand, want: Option<TypeId>, codesys: bool) -> Elem {
+    /// The type of an operation between a value and an untyped constant. Profile codesys widens it for a constant that does not fit.
+    pub fn beside_constant(&mut self, elem: Elem, constant: &Operand, want: Option<TypeId>, codesys: bool) -> Elem {
         match constant {
             // A real literal makes the operation real: as the place asks, else LREAL.
             Operand::Real(_) if !elem.is_real() => match want.and_then(|w| self.elem_of(w)) {
                 Some(Elem::Real) => Elem::Real,
                 _ => Elem::Lreal,
             },
-            Operand::Int(v) if codesys && elem.is_integer() && !rules::holds(elem, *v) => {
+            Operand::Int(v) if elem.is_integer() && !rules::holds(elem, *v) => {
                 let own = rules::default_integer(*v).unwrap_or(Elem::Lint);
-                rules::common(elem, own, true).unwrap_or(elem)
+                let wider = rules::common(elem, own, true).unwrap_or(elem);
+                if codesys {
+                    return wider;
+                }
+                self.cx.codesys_only += usize::from(rules::holds(wider, *v));
+                elem
             }
             _ => elem,
         }
