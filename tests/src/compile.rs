@@ -17,12 +17,19 @@ fn errors(diags: &Diagnostics, sources: &SourceMap) -> String {
 
 /// Reads and checks one source in a profile; `Err` has its errors.
 pub fn check(text: &str, profile: Profile) -> Result<Checked, String> {
-    let (checked, diags, sources) = diagnose(text, profile);
+    let (checked, diags, sources) = read(text, profile);
     if diags.has_errors() { Err(errors(&diags, &sources)) } else { Ok(checked) }
 }
 
-/// Reads and checks one source in a profile, with all messages and the texts they point into.
+/// All messages that `plcc check` has for one source in a profile, and the texts they point into.
 pub fn diagnose(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMap) {
+    let (checked, mut diags, sources) = read(text, profile);
+    plcc_hir::chart_structure::check(&checked.defs, &mut diags);
+    (checked, diags, sources)
+}
+
+/// Without the analysis of charts: what gets stuck can be run, too.
+fn read(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMap) {
     let mut sources = SourceMap::new();
     let mut diags = Diagnostics::new();
     // The standard blocks come first and have the same numbers each time.
