@@ -99,6 +99,18 @@ fn the_commands_of_use_it_run() {
 }
 
 #[test]
+fn the_chart_is_drawn() {
+    let line = block_behind(&readme(), "<!-- graph command -->");
+    let folder = tempfile::tempdir().expect("a folder");
+    let target = folder.path().join("chart.svg").to_string_lossy().into_owned();
+    let args: Vec<&str> =
+        line.split_whitespace().skip(1).map(|a| if a == "chart.svg" { target.as_str() } else { a }).collect();
+    assert_eq!(command(Path::new(PLCC), &project_root(), &args).code, 0);
+    let svg = std::fs::read_to_string(&target).expect("the drawing");
+    assert!(svg.starts_with("<svg") && svg.contains("Heat"), "{}", &svg[..svg.len().min(300)]);
+}
+
+#[test]
 fn the_test_command_is_what_ci_runs() {
     let text = readme();
     assert_eq!(block_behind(&text, "<!-- test command -->"), "cargo test --workspace --locked\n");
