@@ -116,6 +116,10 @@ impl Blocks<'_, '_> {
     /// A token of a TRANSITION before its condition.
     pub(super) fn transition_token(&mut self) {
         let t = self.peek(0);
+        let begun = self.last() != Tok::Transition;
+        if t.first && begun && (self.step_here() || self.transition_here() || self.action_here()) {
+            return self.close_above(self.stack.len() - 1, t);
+        }
         match t.kind {
             Tok::Id if self.is(0, "FROM") && matches!(self.last(), Tok::Transition | Tok::Id | Tok::RParen) => {
                 self.take(Tok::From);

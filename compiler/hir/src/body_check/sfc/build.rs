@@ -118,6 +118,13 @@ impl<'a> Builder<'_, '_, 'a> {
                     .help("remove or rename one of them; names do not differ by case"),
                 );
             }
+            // What the parser could not read, it has reported.
+            let unread =
+                matches!(&transition.condition, ast::Condition::St(e) if matches!(e.kind, ast::ExprKind::Error));
+            if unread && transition.from.is_empty() && transition.to.is_empty() {
+                self.sound = false;
+                continue;
+            }
             let from = self.side(transition, &transition.from, "FROM");
             let to = self.side(transition, &transition.to, "TO");
             let priority = transition.priority.as_ref().and_then(|e| {

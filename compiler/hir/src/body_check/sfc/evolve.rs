@@ -19,7 +19,8 @@ pub(super) struct State {
     pub now: TempId,
     /// Some transition fires in this call.
     pub fires: TempId,
-    /// By transition: it fires in this call. FALSE between calls.
+    /// By transition: it fires in this call. FALSE between calls; only a call that a fault ended (and ENO caught) can leave
+    /// a TRUE, in transitions that the next call evaluates again, because the fault did not change the marking.
     pub chosen: IndexVec<TransitionId, Place>,
     /// With [`Trigger::Edge`]: the number of this call, and by transition the number of the call in which a TRUE counts.
     pub edges: Option<(Place, IndexVec<TransitionId, Place>)>,
@@ -204,9 +205,8 @@ pub(super) fn state(w: &mut Writer, chart: &Chart) -> State {
     State { now, fires, chosen, edges, merged }
 }
 
-/// What comes before step (1): in the first call the time of the initial steps starts (\[F6\]); after a call that did not come
-/// to its end (a fault that ENO caught) nothing is left chosen.
-pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) -> Place {
+/// What comes before step (1): in the first call the time of the initial steps starts (\[F6\]).
+pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
     let (ty, span) = (Types::elem(BOOL), chart.span.before());
     let time = Types::elem(Elem::Time);
     let Some(clock) = plcc_stdlib::funcs::find("TIME") else { plcc_diag::bug!("there is no TIME()") };
@@ -223,11 +223,6 @@ pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<
         let next = operation(Op::Add, Elem::Lint, vec![read(calls.clone()), constant(1, Elem::Lint, span)], span);
         out.push(assign(calls.clone(), next, span));
     }
-    let unfinished = variable(w.hidden("unfinished", ty, span), ty, span);
-    let forget = state.chosen.iter().map(|c| assign(c.clone(), constant(0, BOOL, span), span)).collect();
-    out.push(when(read(unfinished.clone()), forget, span));
-    out.push(assign(unfinished.clone(), constant(1, BOOL, span), span));
-    unfinished
 }
 
 /// (1) Refreshes the times of active steps.

@@ -60,13 +60,12 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, pou: PouId, scope: PouId, body: &'a ast
     let mut w = Writer { c: &mut checker, owner: scope, prefix };
     let mut stmts = Vec::new();
     let state = evolve::state(&mut w, &chart);
-    let unfinished = evolve::begin(&mut w, &chart, &state, &mut stmts);
+    evolve::begin(&mut w, &chart, &state, &mut stmts);
     let groups = groups::Groups::new(&mut w, &chart);
     evolve::times(&chart, &state, &groups, &mut stmts);
     control::write(&mut w, &chart, &groups, &mut stmts);
     evolve::evaluate(&mut w, &chart, &state, &groups, &mut stmts);
     evolve::fire(&chart, &state, &groups, &mut stmts);
-    stmts.push(assign(unfinished, constant(0, BOOL, chart.span), chart.span.before()));
     let temps = checker.temps;
     cx.defs.charts.push(chart);
     Body { stmts, temps, labels }
