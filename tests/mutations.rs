@@ -6,7 +6,7 @@
 
 use fastrand::Rng;
 use plcc_hir::Profile;
-use plcc_tests::compile::compile;
+use plcc_tests::compile::{diagnose, lower};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -103,7 +103,10 @@ fn damage(rng: &mut Rng, text: &str, other: &str) -> String {
 /// Why a source is no good test of robustness any more: the compiler broke on it.
 fn problem(text: &str, profile: Profile) -> Option<String> {
     let start = Instant::now();
-    let result = catch_unwind(AssertUnwindSafe(|| compile(text, profile)));
+    let result = catch_unwind(AssertUnwindSafe(|| match diagnose(text, profile) {
+        (_, diags, _) if diags.has_errors() => Ok(()),
+        (checked, ..) => lower(&checked).map(drop),
+    }));
     let time = start.elapsed();
     match result {
         Err(panic) => {

@@ -46,7 +46,6 @@ fn read(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMap) {
         builtin.map(|(file, ast)| Unit { file: *file, ast, profile: Profile::Strict, builtin: true }).collect();
     units.push(Unit { file: id, ast: &program, profile, builtin: false });
     let checked = plcc_hir::check(&units, &Selection::default(), &mut diags);
-    plcc_hir::chart_structure::check(&checked.defs, &mut diags);
     (checked, diags, sources)
 }
 
