@@ -18,7 +18,7 @@ fn example(page: &str) -> Option<(String, bool)> {
 fn each_example_yields_exactly_its_code() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut wrong = Vec::new();
-    for info in codes::ALL.iter().map(|c| c.info()) {
+    for info in codes::all().map(|c| c.info()) {
         let Some((text, codesys)) = example(info.page) else {
             // Faults, the project file, what is not built yet and what takes pages of text (too deep, too many errors,
             // too large a chart) have no example.
@@ -47,7 +47,7 @@ fn each_example_yields_exactly_its_code() {
 #[test]
 fn codes_are_unique_and_in_order_of_their_sections() {
     let mut seen = std::collections::HashSet::new();
-    for info in codes::ALL.iter().map(|c| c.info()) {
+    for info in codes::all().map(|c| c.info()) {
         assert!(seen.insert(info.code), "{} stands twice", info.code);
         let severity = match info.code.as_bytes()[0] {
             b'E' => codes::Severity::Error,

@@ -17,7 +17,7 @@ pub fn page(name: &str) -> Result<String, Failure> {
     }
     let block_names = blocks::blocks().iter().map(|(n, _)| *n);
     let operators = il_operators::OPERATORS.iter().map(|o| o.name);
-    let names = plcc_diag::codes::ALL.iter().map(|c| c.info().code).chain(funcs::names()).chain(block_names);
+    let names = plcc_diag::codes::all().map(|c| c.info().code).chain(funcs::names()).chain(block_names);
     let names = names.chain(operators).chain(il_operators::INPUT_OPERATORS.iter().map(|o| o.name));
     let hint = plcc_hir::similar(&upper, names).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
     Err(Failure::usage(format!("nothing is known about `{name}`{hint}")))

@@ -224,7 +224,7 @@ fn configurations() {
 #[test]
 fn the_pages_of_the_syntax_codes_show_their_mistake() {
     let mut checked = 0;
-    for code in plcc_diag::codes::ALL {
+    for code in plcc_diag::codes::all() {
         let info = code.info();
         let Some(example) = info.page.split("```st\n").nth(1).and_then(|p| p.split("```").next()) else { continue };
         if !["E01", "H01"].contains(&&info.code[..3]) {
