@@ -11,7 +11,7 @@ use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::ops::Op;
 use plcc_syntax::ast;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Checks a body in the scope of its POU.
 pub(crate) fn check<'a>(cx: &mut Cx<'a>, scope: PouId, stmts: &'a [ast::Stmt]) -> Body {
@@ -19,6 +19,8 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, scope: PouId, stmts: &'a [ast::Stmt]) -
         c: Checker { cx, scope: Some(scope), temps: Default::default() },
         loops: Vec::new(),
         labels: FxHashMap::default(),
+        outer: FxHashSet::default(),
+        inner: FxHashSet::default(),
         label_count: 0,
     };
     st.declare_labels(stmts);
@@ -45,6 +47,9 @@ struct St<'c, 'a> {
     c: Checker<'c, 'a>,
     loops: Vec<Loop>,
     labels: FxHashMap<smol_str::SmolStr, Label>,
+    /// Where labels stand at the outermost level, and the names of others, which were reported.
+    outer: FxHashSet<Span>,
+    inner: FxHashSet<smol_str::SmolStr>,
     label_count: u32,
 }
 
@@ -94,7 +99,7 @@ impl<'a> St<'_, 'a> {
                 }
             }
             ast::StmtKind::Return => Some(StmtKind::Return),
-            ast::StmtKind::Label(name) => self.labels.get(&fold(&name.text)).map(|l| StmtKind::Label(l.id)),
+            ast::StmtKind::Label(name) => self.label_here(name),
             ast::StmtKind::Jump(name) => self.jump(name),
             ast::StmtKind::Empty | ast::StmtKind::Error => None,
         };
@@ -533,6 +538,7 @@ impl<'a> St<'_, 'a> {
         for stmt in stmts {
             let ast::StmtKind::Label(name) = &stmt.kind else { continue };
             let id = self.new_label();
+            self.outer.insert(name.span);
             let label = Label { id, declared: Some(name.span), used: None };
             if let Some(first) = self.labels.insert(fold(&name.text), label) {
                 self.c.report(
@@ -547,12 +553,34 @@ impl<'a> St<'_, 'a> {
         }
     }
 
+    /// A label where it stands. One inside another statement is none: nothing could be said about the way to it.
+    fn label_here(&mut self, name: &'a ast::Name) -> Option<StmtKind> {
+        let label = self.labels.get(&fold(&name.text)).filter(|l| l.declared == Some(name.span));
+        if let Some(label) = label {
+            return Some(StmtKind::Label(label.id));
+        }
+        // One that is declared twice was reported.
+        if !self.outer.contains(&name.span) {
+            self.inner.insert(fold(&name.text));
+            self.c.report(
+                Diagnostic::new(
+                    codes::UNKNOWN_LABEL,
+                    name.span,
+                    format!("the label `{}` stands inside another statement", name.text),
+                )
+                .help("a label stands at the outermost level of a body; jumps out of statements lead to it"),
+            );
+        }
+        None
+    }
+
     fn jump(&mut self, name: &'a ast::Name) -> Option<StmtKind> {
         match self.labels.get_mut(&fold(&name.text)) {
             Some(label) => {
                 label.used = Some(name.span);
                 Some(StmtKind::Jump(label.id, None))
             }
+            None if self.inner.contains(&fold(&name.text)) => None,
             None => {
                 let hint = similar(&name.text, self.labels.keys().map(|k| k.as_str()));
                 self.c.report(
