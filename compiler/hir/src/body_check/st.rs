@@ -559,8 +559,9 @@ impl<'a> St<'_, 'a> {
         if let Some(label) = label {
             return Some(StmtKind::Label(label.id));
         }
-        // One that is declared twice was reported.
-        if !self.outer.contains(&name.span) {
+        // One that is declared twice was reported; behind a mistake of syntax it may be the label of a CASE.
+        let half_read = self.c.cx.half_read.contains(&name.span.file);
+        if !self.outer.contains(&name.span) && !half_read {
             self.inner.insert(fold(&name.text));
             self.c.report(
                 Diagnostic::new(
