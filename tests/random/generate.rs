@@ -29,6 +29,8 @@ pub enum Ty {
     },
 }
 
+const DINT: Ty = Ty::Int { bits: 32, signed: true };
+
 const TYPES: [Ty; 23] = [
     Ty::Bool,
     Ty::Bool,
@@ -132,6 +134,8 @@ struct Function {
     output: bool,
     /// Has a VAR_IN_OUT STRING of any capacity.
     text_in_out: bool,
+    /// Has a VAR_IN_OUT ARRAY [*] OF DINT.
+    open: bool,
 }
 
 /// A function block that earlier text declared.
@@ -153,6 +157,8 @@ pub struct Generator {
     vars: Vec<Var>,
     instances: Vec<(String, Block)>,
     arrays: Vec<(String, i64, i64, Ty)>,
+    /// References and the types of their targets.
+    references: Vec<(String, Ty)>,
     loops: u32,
     loop_vars: Vec<String>,
     free_loop_vars: Vec<String>,
@@ -172,6 +178,7 @@ pub fn program(seed: u64, prefix: &str, faults: bool) -> String {
         vars: Vec::new(),
         instances: Vec::new(),
         arrays: Vec::new(),
+        references: Vec::new(),
         loops: 0,
         loop_vars: Vec::new(),
         free_loop_vars: Vec::new(),
@@ -194,6 +201,7 @@ TYPE
   Color : (Red, Green := 5, Blue);
   Small : INT (-5..20);
   Pair : STRUCT a : INT := 3; b : DINT; c : BOOL; r : REAL := 0.5; n : STRING[5] := 'pair'; END_STRUCT;
+  Nest : STRUCT p : Pair := (a := 9); m : ARRAY [1..2] OF Pair; END_STRUCT;
 END_TYPE
 ";
 
@@ -215,6 +223,7 @@ impl Generator {
         self.vars.clear();
         self.instances.clear();
         self.arrays.clear();
+        self.references.clear();
         self.loop_vars.clear();
         self.free_loop_vars.clear();
     }
@@ -282,6 +291,24 @@ impl Generator {
                 }
             }
         }
+        if self.chance(30) {
+            self.line("  nest : Nest;");
+            for (path, ty) in [
+                ("p.a", Ty::Int { bits: 16, signed: true }),
+                ("m[2].b", DINT),
+                ("m[1].r", Ty::Real),
+                ("m[2].n", Ty::Text { wide: false, capacity: Some(5) }),
+            ] {
+                self.vars.push(Var { text: format!("nest.{path}"), ty, write: true });
+            }
+        }
+        if self.chance(50) {
+            let low = self.rng.i64(-2..2);
+            let high = low + self.rng.i64(1..4);
+            self.line(&format!("  dints : ARRAY [{low}..{high}] OF DINT;"));
+            self.arrays.push(("dints".into(), low, high, DINT));
+        }
+        self.references();
         for n in 0..3 {
             self.line(&format!("  i{n} : INT;"));
             self.vars.push(Var { text: format!("i{n}"), ty: Ty::Int { bits: 16, signed: true }, write: false });
@@ -297,6 +324,12 @@ impl Generator {
                 self.line(&format!("  {name} : {};", block.name));
                 self.instance(name, block);
             }
+            if self.chance(30) && !self.blocks.is_empty() {
+                let block = self.blocks[self.rng.usize(0..self.blocks.len())].clone();
+                self.line(&format!("  fbs : ARRAY [1..3] OF {};", block.name));
+                self.instance("fbs[1]".into(), block.clone());
+                self.instance("fbs[3]".into(), block);
+            }
             for n in 0..self.rng.usize(0..3) {
                 let block = standard_block(self.rng.usize(0..STANDARD));
                 let name = format!("std{n}");
@@ -305,6 +338,37 @@ impl Generator {
             }
         }
         self.line("END_VAR");
+    }
+
+    /// References to variables that stand before them, initialised; pointers to arrays.
+    fn references(&mut self) {
+        for n in 0..self.rng.usize(0..3) {
+            let targets = self.targets(None);
+            if targets.is_empty() {
+                break;
+            }
+            let (target, ty) = targets[self.rng.usize(0..targets.len())].clone();
+            let name = format!("ref{n}");
+            self.line(&format!("  {name} : REF_TO {} := REF({target});", ty.name()));
+            self.references.push((name, ty));
+        }
+        // They become variables last, so that none refers to what another one refers to.
+        for (name, ty) in self.references.clone() {
+            self.vars.push(Var { text: format!("{name}^"), ty, write: true });
+        }
+        if let (Some((name, low, high, ty)), true) = (self.arrays.first().cloned(), self.chance(30)) {
+            self.line(&format!("  ptr : POINTER TO ARRAY [{low}..{high}] OF {} := ADR({name});", ty.name()));
+            self.arrays.push(("ptr^".into(), low, high, ty));
+        }
+    }
+
+    /// Variables of this POU to which a reference can point, of one type or of any.
+    fn targets(&self, wanted: Option<Ty>) -> Vec<(String, Ty)> {
+        let stays = |v: &&Var| {
+            let own = ["v", "s.", "t.", "nest.", "mat["].iter().any(|start| v.text.starts_with(start));
+            own && v.write && v.ty != Ty::Small && !v.text.contains('^') && wanted.is_none_or(|ty| ty == v.ty)
+        };
+        self.vars.iter().filter(stays).map(|v| (v.text.clone(), v.ty)).collect()
     }
 
     fn instance(&mut self, name: String, block: Block) {
@@ -334,6 +398,16 @@ impl Generator {
             self.line("VAR_IN_OUT text : STRING; END_VAR");
             self.vars.push(Var { text: "text".into(), ty: Ty::Text { wide: false, capacity: None }, write: true });
         }
+        let open = self.chance(30);
+        if open {
+            self.line("VAR_IN_OUT open : ARRAY [*] OF DINT; END_VAR");
+            for text in ["open[LOWER_BOUND(open, 1)]", "open[UPPER_BOUND(open, 1)]"] {
+                self.vars.push(Var { text: text.into(), ty: DINT, write: true });
+            }
+            if self.faults && self.chance(20) {
+                self.vars.push(Var { text: "open[2]".into(), ty: DINT, write: false });
+            }
+        }
         if output {
             self.line("VAR_OUTPUT o : INT := 4; END_VAR");
             self.vars.push(Var { text: "o".into(), ty: Ty::Int { bits: 16, signed: true }, write: true });
@@ -344,7 +418,7 @@ impl Generator {
         self.line(&format!("{name} := {value};"));
         self.indent = 0;
         self.line("END_FUNCTION");
-        self.functions.push(Function { name, params, result, in_out, output, text_in_out });
+        self.functions.push(Function { name, params, result, in_out, output, text_in_out, open });
     }
 
     fn block(&mut self, n: usize) {
@@ -452,6 +526,19 @@ impl Generator {
                 1 => "t := s;".into(),
                 2 => format!("s := SEL({}, s, t);", self.expr(Ty::Bool, 2)),
                 _ => format!("t := MUX({}, s, t, s);", self.expr(Ty::Int { bits: 16, signed: true }, 2)),
+            };
+            self.line(&text);
+            return;
+        }
+        if !self.references.is_empty() && self.chance(8) {
+            let (name, ty) = self.references[self.rng.usize(0..self.references.len())].clone();
+            let same: Vec<String> = self.references.iter().filter(|r| r.1 == ty).map(|r| r.0.clone()).collect();
+            let targets = self.targets(Some(ty));
+            let text = match self.rng.u32(0..20) {
+                0 if self.faults => format!("{name} := NULL;"),
+                1..=6 => format!("{name} ?= {};", same[self.rng.usize(0..same.len())]),
+                _ if targets.is_empty() => return,
+                _ => format!("{name} := REF({});", targets[self.rng.usize(0..targets.len())].0),
             };
             self.line(&text);
             return;
@@ -987,6 +1074,13 @@ impl Generator {
                 return None;
             }
             args.push(format!("text := {}", all[self.rng.usize(0..all.len())]));
+        }
+        if f.open {
+            let all: Vec<String> = self.arrays.iter().filter(|a| a.3 == DINT).map(|a| a.0.clone()).collect();
+            if all.is_empty() {
+                return None;
+            }
+            args.push(format!("open := {}", all[self.rng.usize(0..all.len())]));
         }
         if f.output {
             let int = Ty::Int { bits: 16, signed: true };
