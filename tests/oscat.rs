@@ -3,8 +3,8 @@
 //! is in this repository. To run it, fetch the library's edition for open compilers and say where it lies:
 //!
 //! ```text
-//! git clone --depth 1 https://github.com/PLC-lang/oscat /tmp/oscat
-//! OSCAT=/tmp/oscat/oscat.st cargo test -p plcc-tests --test oscat
+//! git clone --depth 1 https://github.com/PLC-lang/oscat ../oscat
+//! OSCAT="$PWD/../oscat/oscat.st" cargo test -p plcc-tests --test oscat
 //! ```
 //! In `oscat/*.st` a BOOL named like a POU of the library is the verdict on it. What the checks leave out, because the library itself is
 //! wrong there, stands in the notes at the end of `oscat/config.st`.
