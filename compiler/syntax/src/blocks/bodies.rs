@@ -190,7 +190,8 @@ impl Blocks<'_, '_> {
             Tok::Then | Tok::Do => self.missing_opener(t.kind),
             kind => {
                 if let Some(block) = Construct::statement(kind) {
-                    if self.peek(1).kind == kind {
+                    // Only REPEAT may stand directly behind itself.
+                    if self.peek(1).kind == kind && block != Construct::Repeat {
                         let message = format!("{} stands twice", kind.describe());
                         self.report.push(
                             self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove one of them"),
