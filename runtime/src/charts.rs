@@ -6,11 +6,7 @@
 
 use crate::image::{Image, TypeDesc};
 use crate::path::Resolver;
-
-/// The hidden field of a step that was activated twice.
-const STEP: &str = ".$twice";
-/// The hidden variable of an instance whose chart has such a step; charts of ACTIONs have the action's name in front.
-const CHART: &str = "$merged";
+use plcc_stdlib::chart_flags::{CHART, STEP};
 
 /// The flags of all charts.
 #[derive(Debug, Default)]
@@ -26,14 +22,14 @@ impl Charts {
     pub fn new(image: &Image, resolver: &Resolver) -> Self {
         let mut charts = Self::default();
         let step =
-            |ty: &TypeDesc| matches!(ty, TypeDesc::Struct { fields, .. } if fields.iter().any(|f| f.name == STEP[1..]));
+            |ty: &TypeDesc| matches!(ty, TypeDesc::Struct { fields, .. } if fields.iter().any(|f| f.name == STEP));
         if !image.types.iter().any(step) {
             return charts;
         }
         for (name, leaf) in resolver.every_leaf().unwrap_or_default() {
-            if let Some(step) = name.strip_suffix(STEP) {
+            if let Some(step) = name.strip_suffix(STEP).and_then(|step| step.strip_suffix('.')) {
                 charts.steps.push((leaf.offset as usize, step.to_string()));
-            } else if name.ends_with(CHART) {
+            } else if name.strip_suffix(CHART).is_some_and(|rest| rest.ends_with('$')) {
                 charts.raised.push(leaf.offset as usize);
             }
         }

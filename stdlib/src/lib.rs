@@ -2,6 +2,7 @@
 //! the standard function blocks. The compiler, all engines and the runtime read it; it reads nothing of theirs.
 
 pub mod blocks;
+pub mod chart_flags;
 pub mod convert;
 pub mod elem;
 pub mod emit;

@@ -255,6 +255,38 @@ pub enum Root {
     Address(crate::defs::Address),
 }
 
+impl Place {
+    /// The place as text if it is the same whenever it is reached: no variable index, no reference. `name` gives the text of a
+    /// variable.
+    pub fn fixed(&self, name: impl Fn(VarId) -> String) -> Option<String> {
+        let mut text = match &self.root {
+            Root::Var(var) => name(*var),
+            Root::Address(address) => match address.bit {
+                Some(bit) => format!("%{:?} byte {} bit {bit}", address.area, address.byte),
+                None => format!("%{:?} byte {}", address.area, address.byte),
+            },
+            Root::Temp(_) | Root::Deref(_) => return None,
+        };
+        for step in &self.steps {
+            text += &match step {
+                Step::Field(n) => format!(".#{n}"),
+                Step::Member(var) => format!(".{}", name(*var)),
+                Step::Bit(n) => format!(".%X{n}"),
+                Step::Part(elem, n) => format!(".{}{n}", elem.name()),
+                Step::Index(indices, _) => {
+                    let constant = |e: &Expr| match e.kind {
+                        ExprKind::Const(raw) => Some((raw as i64).to_string()),
+                        _ => None,
+                    };
+                    format!("[{}]", indices.iter().map(constant).collect::<Option<Vec<_>>>()?.join(","))
+                }
+                Step::Deref | Step::OpenIndex(..) | Step::Character { .. } => return None,
+            };
+        }
+        Some(text)
+    }
+}
+
 /// One step into a place.
 #[derive(Debug, Clone)]
 pub enum Step {

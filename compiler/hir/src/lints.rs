@@ -194,8 +194,23 @@ struct Calls<'c, 'a, 'o> {
     out: &'o mut Vec<Diagnostic>,
 }
 
-/// An instance by its path (and its one input), and where it was called.
-type Called = (String, Span);
+/// Where an instance was called.
+#[derive(Clone, PartialEq, Eq)]
+struct Called {
+    /// The instance.
+    path: String,
+    /// The one input to which the call gives a value.
+    only: Option<VarId>,
+    span: Span,
+}
+
+impl Called {
+    /// Whether two calls are two places. `PT t`, then `IN t` in IL are not: each gives another input its value.
+    fn clashes(&self, other: &Self) -> bool {
+        let apart = self.only.is_some() && other.only.is_some() && self.only != other.only;
+        self.path == other.path && !apart
+    }
+}
 
 impl Calls<'_, '_, '_> {
     fn list(&mut self, list: &[Stmt], called: &mut Vec<Called>) {
@@ -229,8 +244,7 @@ impl Calls<'_, '_, '_> {
         for body in bodies {
             let mut own = before.clone();
             self.list(body, &mut own);
-            let new = own.into_iter().filter(|(path, _)| !before.iter().any(|(p, _)| p == path));
-            called.extend(new.collect::<Vec<_>>());
+            called.extend(own.into_iter().filter(|c| !before.contains(c)));
         }
     }
 
@@ -238,43 +252,24 @@ impl Calls<'_, '_, '_> {
         let Callee::Instance(place, _) = &call.callee else { return };
         // `t(IN := FALSE)` resets a timer before its call proper: all values are constants.
         let reset = !call.inputs.is_empty() && call.inputs.iter().all(|(_, e)| matches!(e.kind, ExprKind::Const(_)));
-        let Some(path) = self.path(place).filter(|_| !reset) else { return };
-        // `PT t`, then `IN t` in IL: each gives one input its value. Only the same input twice is two places.
-        let key = match (call.inputs.as_slice(), call.outputs.is_empty()) {
-            ([(input, _)], true) => format!("{path} by {}", self.cx.defs.vars[*input].name),
-            _ => path.clone(),
+        let name = |var: VarId| self.cx.defs.vars[var].name.to_string();
+        let Some(path) = place.fixed(name).filter(|_| !reset) else { return };
+        let only = match (call.inputs.as_slice(), call.outputs.is_empty()) {
+            ([(input, _)], true) => Some(*input),
+            _ => None,
         };
-        match called.iter().find(|(p, _)| *p == key) {
-            Some((_, first)) => self.out.push(
+        let here = Called { path, only, span: call.span };
+        match called.iter().find(|c| c.clashes(&here)) {
+            Some(first) => self.out.push(
                 Diagnostic::new(
                     codes::CALLED_TWICE,
                     call.span,
-                    format!("the instance `{path}` is called twice in one cycle"),
+                    format!("the instance `{}` is called twice in one cycle", here.path),
                 )
-                .also(*first, "first called here")
+                .also(first.span, "first called here")
                 .help("timers, counters and edges then see two calls per cycle; use an instance for each place"),
             ),
-            None => called.push((key, call.span)),
+            None => called.push(here),
         }
-    }
-
-    /// The instance, if it is the same in every cycle: no variable index, no reference.
-    fn path(&self, place: &Place) -> Option<String> {
-        let Root::Var(var) = place.root else { return None };
-        let mut text = self.cx.defs.vars[var].name.to_string();
-        for step in &place.steps {
-            match step {
-                Step::Member(var) => text = format!("{text}.{}", self.cx.defs.vars[*var].name),
-                Step::Field(n) => text = format!("{text}.#{n}"),
-                Step::Index(indices, _) => {
-                    for index in indices {
-                        let ExprKind::Const(raw) = index.kind else { return None };
-                        text = format!("{text}[{}]", raw as i64);
-                    }
-                }
-                _ => return None,
-            }
-        }
-        Some(text)
     }
 }

@@ -19,7 +19,7 @@ pub(crate) mod field {
 
     /// Active.
     pub const X: u32 = 0;
-    /// It was activated while it was active: the runtime looks for this name.
+    /// It was activated while it was active: the runtime looks for its name.
     pub const TWICE: u32 = 1;
     /// For how long.
     pub const T: u32 = 2;
@@ -27,7 +27,7 @@ pub(crate) mod field {
     pub const START: u32 = 3;
     /// Their names and types. Names that users cannot write are hidden in traces.
     pub const ALL: [(&str, Elem); 4] =
-        [("X", Elem::Bool), ("$twice", Elem::Bool), ("T", Elem::Time), ("$start", Elem::Time)];
+        [("X", Elem::Bool), (plcc_stdlib::chart_flags::STEP, Elem::Bool), ("T", Elem::Time), ("$start", Elem::Time)];
 }
 
 /// Options of the charts of a POU (\[F5\]).

@@ -1,8 +1,7 @@
 //! The associations of steps: which action, which qualifier, for how long.
 
 use crate::PouId;
-use crate::body::ExprKind;
-use crate::body::{Place, Root, Step as PlaceStep};
+use crate::body::{Place, Root};
 use crate::chart::*;
 use crate::cx::*;
 use crate::expr::Checker;
@@ -13,7 +12,6 @@ use plcc_diag::{Diagnostic, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
 use rustc_hash::FxHashMap;
-use std::fmt::Write;
 
 /// What tells actions apart: associations with the same one are OR-ed.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -80,7 +78,7 @@ impl<'b, 'c, 'a> Resolver<'b, 'c, 'a> {
             return Some(self.intern(Key::Block(block), action));
         }
         let place = self.variable(e)?;
-        let Some(key) = fixed_place(&place) else {
+        let Some(key) = place.fixed(|var| format!("{var:?}")) else {
             self.c.report(
                 Diagnostic::new(codes::NOT_AN_ACTION, e.span, "which variable this action is can change at run time")
                     .help("name one BOOL variable, or set it in an ACTION block"),
@@ -208,33 +206,4 @@ fn meant(text: &str) -> Option<Qualifier> {
         letters
     };
     Qualifier::ALL.into_iter().find(|q| letters(q.text()) == letters(text))
-}
-
-/// A place as text if it is the same in all scans.
-fn fixed_place(place: &Place) -> Option<String> {
-    let mut text = match &place.root {
-        Root::Var(var) => format!("{var:?}"),
-        Root::Address(address) => match address.bit {
-            Some(bit) => format!("%{:?} byte {} bit {bit}", address.area, address.byte),
-            None => format!("%{:?} byte {}", address.area, address.byte),
-        },
-        Root::Temp(_) | Root::Deref(_) => return None,
-    };
-    for step in &place.steps {
-        let _ = match step {
-            PlaceStep::Field(n) => write!(text, ".{n}"),
-            PlaceStep::Member(var) => write!(text, ".{var:?}"),
-            PlaceStep::Bit(n) => write!(text, ".%X{n}"),
-            PlaceStep::Part(elem, n) => write!(text, ".{}{n}", elem.name()),
-            PlaceStep::Deref | PlaceStep::OpenIndex(..) | PlaceStep::Character { .. } => return None,
-            PlaceStep::Index(indices, _) => {
-                for index in indices {
-                    let ExprKind::Const(raw) = index.kind else { return None };
-                    let _ = write!(text, "[{raw}]");
-                }
-                Ok(())
-            }
-        };
-    }
-    Some(text)
 }

@@ -200,7 +200,7 @@ pub(super) fn state(w: &mut Writer, chart: &Chart) -> State {
     let sequential = chart.transitions.iter().all(|t| t.from.len() == 1 && t.to.len() == 1);
     let merged = (!sequential).then(|| {
         let ty = Types::elem(BOOL);
-        variable(w.hidden("merged", ty, chart.span), ty, chart.span.before())
+        variable(w.hidden(plcc_stdlib::chart_flags::CHART, ty, chart.span), ty, chart.span.before())
     });
     State { now, fires, chosen, edges, merged }
 }
