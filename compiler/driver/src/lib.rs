@@ -11,6 +11,7 @@ mod image;
 mod link;
 mod new;
 mod pipeline;
+mod places;
 mod project;
 mod render;
 
