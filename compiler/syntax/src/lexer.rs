@@ -195,7 +195,7 @@ impl Lexer<'_, '_, '_> {
                 i += 1;
             }
         }
-        let end = end.unwrap_or_else(|| {
+        let end = end.or_else(|| self.loose_comment(first_end)).unwrap_or_else(|| {
             let (open, close) = if open == b'(' { ("(*", "*)") } else { ("/*", "*/") };
             let mut message = self.report.at(
                 codes::UNCLOSED_COMMENT,
@@ -217,6 +217,21 @@ impl Lexer<'_, '_, '_> {
         });
         self.first |= self.bytes[self.at..end].contains(&b'\n');
         self.at = end;
+    }
+
+    /// Where an unclosed comment in an XML file ends all the same: editors of PLCopen XML write comments that do not nest,
+    /// and one on the last line of a text hides nothing.
+    fn loose_comment(&mut self, first_end: Option<usize>) -> Option<usize> {
+        if !self.fillers {
+            return None;
+        }
+        let rest = &self.text[self.at..];
+        let end = first_end.or_else(|| (!rest.trim_end().contains('\n')).then_some(self.bytes.len()))?;
+        self.nested_comments &= first_end.is_none();
+        let start = self.at as u32;
+        let message = self.report.at(codes::LOOSE_COMMENT, start, start + 2, "this comment is not closed");
+        self.report.push(message.help("write `*)` where it ends; comments nest"));
+        Some(end)
     }
 
     fn pragma(&mut self) {

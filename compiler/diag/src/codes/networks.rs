@@ -15,4 +15,5 @@ codes! {
     LOOP_BROKEN "H0419" Hint "a value of the cycle before is used" "";
     NO_CONDITION "E0420" Error "nothing gives a transition its value" "";
     UNKNOWN_PIN "E0421" Error "a block has no such output" "";
+    IDLE_ELEMENT "W0422" Warning "a drawn variable takes no value" "";
 }

@@ -43,4 +43,14 @@ What plcc would leave out could change what the program does, so elements that P
   <pou name=\"Main\" pouType=\"program\"><body><CFC/></body></pou>\n\
 </pous></types></project>\n\
 ```\n\nExport the POU in one of the five notations of the standard.\n";
+    LOOSE_COMMENT "W0135" Warning "a comment in an XML file is not closed" "\
+Comments nest, and each needs its own end. Editors of PLCopen XML write comments that do not nest, so in an XML file `(* a (* b *)` counts as closed, and a comment on the last line of a text ends with it.\n\
+\n\
+```xml\n\
+<project xmlns=\"http://www.plcopen.org/xml/tc6_0201\"><types><pous>\n\
+  <pou name=\"Main\" pouType=\"program\"><body><ST>\n\
+    (* the end of this text *\n\
+  </ST></body></pou>\n\
+</pous></types></project>\n\
+```\n\nClose the comment.\n";
 }

@@ -479,6 +479,15 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 self.give(own, power.clone(), true);
                 self.store(variable, power, *modifier, index, None);
             }
+            // Left over in many drawings; it changes nothing.
+            ElementKind::Out { .. } if element.inputs.iter().all(|p| p.connections.is_empty() && p.literal.is_none()) => {
+                self.say(
+                    codes::IDLE_ELEMENT,
+                    span,
+                    "nothing is connected to this variable, it takes no value".into(),
+                    "connect it, or remove it",
+                );
+            }
             ElementKind::Out { target, modifier } => {
                 let guard = self.guard(index);
                 let value = self.needed(index, 0);
@@ -541,6 +550,9 @@ impl<'n> Writer<'n, '_, '_, '_> {
     fn guard(&mut self, index: usize) -> Option<Expr> {
         let [(source, _)] = self.links.inputs[index].first()?.as_slice() else { return None };
         let element = self.at(source.element);
+        if self.output_name(element, source.pin).is_some_and(|n| n.eq_ignore_ascii_case("ENO")) {
+            return None;
+        }
         let before = self.position[source.element] < self.position[index];
         if !before || !matches!(element.kind, ElementKind::Block { instance: None, .. }) || !self.has_en(source.element) {
             return None;
@@ -814,6 +826,7 @@ fn is_simple(e: &Expr) -> bool {
         ExprKind::Literal(_) | ExprKind::Name(_) | ExprKind::Qualified { .. } | ExprKind::Address(_) => true,
         ExprKind::Member(base, _) => is_simple(base),
         ExprKind::Unary(UnaryOp::Not, inner) => is_simple(inner),
+        ExprKind::Unary(_, inner) => matches!(inner.kind, ExprKind::Literal(_)),
         _ => false,
     }
 }

@@ -133,9 +133,8 @@ fn not_well_formed(file: FileId, text: &str, error: &roxmltree::Error) -> Diagno
         }
         roxmltree::Error::NodesLimitReached => ("this file has too many elements".into(), "export it in several files"),
         other => {
-            let text = other.to_string();
             // The library repeats the position that the message shows anyway.
-            let text = text.split(" at ").next().unwrap_or(&text).to_string();
+            let text = other.to_string().replace(&format!(" at {place}"), "");
             (format!("this is not well-formed XML: {text}"), "export the file again, or look at this place")
         }
     };
