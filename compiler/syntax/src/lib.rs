@@ -46,12 +46,7 @@ pub fn parse_file(file: FileId, text: &str, profile: Profile, diags: &mut Diagno
             items.push(*item);
         }
     }
-    ast::File {
-        items,
-        pragmas: lexed.pragmas,
-        doubtful: report.doubtful(text, &lexed.tokens),
-        places: Vec::new(),
-    }
+    ast::File { items, pragmas: lexed.pragmas, doubtful: report.doubtful(text, &lexed.tokens), places: Vec::new() }
 }
 
 /// Reads a PLCopen TC6 XML file. Mistakes are reported and leave error nodes.

@@ -30,7 +30,8 @@ pub(crate) fn check_all(cx: &mut Cx) {
 fn infer_kept(cx: &mut Cx<'_>, pou: PouId) {
     for n in 0..cx.defs.pous[pou].vars.len() {
         let var = cx.defs.pous[pou].vars[n];
-        let Some((ast::TypeExpr { kind: ast::TypeExprKind::Inferred(Some(like)), .. }, _)) = cx.var_slots[var].decl else {
+        let Some((ast::TypeExpr { kind: ast::TypeExprKind::Inferred(Some(like)), .. }, _)) = cx.var_slots[var].decl
+        else {
             continue;
         };
         if cx.defs.vars[var].ty != Types::ERROR {

@@ -176,9 +176,8 @@ pub(super) fn result_pin(element: &Element, owner: &Owner) -> Option<usize> {
     let function = owner.user.functions.get(&ty.text.to_ascii_uppercase());
     let declared = |name: &str| function.is_some_and(|f| f.outputs.iter().any(|(n, _)| n.eq_ignore_ascii_case(name)));
     element.outputs.iter().position(|pin| {
-        let plain = pin.name.is_empty()
-            || pin.name.eq_ignore_ascii_case("OUT")
-            || pin.name.eq_ignore_ascii_case(&ty.text);
+        let plain =
+            pin.name.is_empty() || pin.name.eq_ignore_ascii_case("OUT") || pin.name.eq_ignore_ascii_case(&ty.text);
         plain && !pin.in_out && !declared(&pin.name)
     })
 }
@@ -187,7 +186,8 @@ pub(super) fn result_pin(element: &Element, owner: &Owner) -> Option<usize> {
 fn at_its_place(element: &Element, connection: &Connection) -> Option<usize> {
     let begin = connection.path.last()?;
     let near = |a: f64, b: f64| (a - b).abs() < 0.5;
-    element.outputs.iter().position(|pin| {
-        near(element.position.x + pin.at.x, begin.x) && near(element.position.y + pin.at.y, begin.y)
-    })
+    element
+        .outputs
+        .iter()
+        .position(|pin| near(element.position.x + pin.at.x, begin.x) && near(element.position.y + pin.at.y, begin.y))
 }

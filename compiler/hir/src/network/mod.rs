@@ -68,9 +68,8 @@ impl UserPous {
                 ast::PouKind::Function => {
                     let sections = pou.sections.iter().filter(|s| s.kind == ast::SectionKind::Output);
                     let outputs = sections.flat_map(|s| &s.vars);
-                    let outputs = outputs.flat_map(|v| {
-                        v.names.iter().map(|n| (n.text.to_ascii_uppercase(), v.ty.clone()))
-                    });
+                    let outputs =
+                        outputs.flat_map(|v| v.names.iter().map(|n| (n.text.to_ascii_uppercase(), v.ty.clone())));
                     let function = UserFunction { outputs: outputs.collect(), result: pou.result.clone() };
                     found.functions.insert(key, function);
                 }
@@ -88,9 +87,10 @@ fn has_networks(pou: &ast::Pou) -> bool {
     let bodies = std::iter::once(&pou.body).chain(pou.actions.iter().map(|a| &a.body));
     bodies.into_iter().any(|body| match body {
         Body::Network(_) => true,
-        Body::Sfc(chart) => chart.elements.iter().any(|e| {
-            matches!(e, SfcElement::Transition(ast::Transition { condition: Condition::Network(_), .. }))
-        }),
+        Body::Sfc(chart) => chart
+            .elements
+            .iter()
+            .any(|e| matches!(e, SfcElement::Transition(ast::Transition { condition: Condition::Network(_), .. }))),
         Body::St(_) | Body::Il(_) => false,
     })
 }

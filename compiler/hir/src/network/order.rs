@@ -38,7 +38,8 @@ pub(super) fn order(network: &Network, links: &Links) -> Vec<usize> {
         let (p, q) = (left.position, right.position);
         by_order.then(p.y.total_cmp(&q.y)).then(p.x.total_cmp(&q.x)).then(a.cmp(b))
     });
-    let mut walk = Walk { elements, deps: &deps, broken: &broken, state: vec![State::New; elements.len()], out: Vec::new() };
+    let mut walk =
+        Walk { elements, deps: &deps, broken: &broken, state: vec![State::New; elements.len()], out: Vec::new() };
     for root in roots {
         walk.from(root);
     }
@@ -147,7 +148,8 @@ fn break_loops(elements: &[Element], deps: &[Vec<usize>]) -> FxHashSet<(usize, u
     while let Some(members) = open.pop() {
         loops += 1;
         // Where all blocks are numbered, the numbers decide.
-        let unnumbered = |i: &&usize| matches!(elements[**i].kind, ElementKind::Block { .. }) && elements[**i].order.is_none();
+        let unnumbered =
+            |i: &&usize| matches!(elements[**i].kind, ElementKind::Block { .. }) && elements[**i].order.is_none();
         let has_blocks = members.iter().any(|i| matches!(elements[*i].kind, ElementKind::Block { .. }));
         if loops > MAX_LOOPS || (has_blocks && !members.iter().any(|i| unnumbered(&i))) {
             continue;

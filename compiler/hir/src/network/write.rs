@@ -152,7 +152,9 @@ impl<'n> Writer<'n, '_, '_, '_> {
             return;
         }
         let stored = match &element.kind {
-            ElementKind::Block { instance: Some(_), .. } => !self.output_name(element, source.pin).is_some_and(|n| n.eq_ignore_ascii_case("ENO")),
+            ElementKind::Block { instance: Some(_), .. } => {
+                !self.output_name(element, source.pin).is_some_and(|n| n.eq_ignore_ascii_case("ENO"))
+            }
             ElementKind::InOut { .. } => true,
             _ => false,
         };
@@ -293,9 +295,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
                     ArgKind::Positional(e) | ArgKind::Input(_, Some(e)) => self.without_late(e),
                     _ => None,
                 };
-                let control = |arg: &Arg| {
-                    matches!(&arg.kind, ArgKind::Input(n, _) if ["EN", "G", "K"].iter().any(|c| n.text.eq_ignore_ascii_case(c)))
-                };
+                let control = |arg: &Arg| matches!(&arg.kind, ArgKind::Input(n, _) if ["EN", "G", "K"].iter().any(|c| n.text.eq_ignore_ascii_case(c)));
                 let other = found.args.iter().filter(|a| !control(a)).find_map(value)?;
                 let args = found.args.iter().filter(|a| !matches!(a.kind, ArgKind::Output { .. })).map(|arg| {
                     let value = value(arg).unwrap_or_else(|| match control(arg) {
@@ -480,7 +480,9 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 self.store(variable, power, *modifier, index, None);
             }
             // Left over in many drawings; it changes nothing.
-            ElementKind::Out { .. } if element.inputs.iter().all(|p| p.connections.is_empty() && p.literal.is_none()) => {
+            ElementKind::Out { .. }
+                if element.inputs.iter().all(|p| p.connections.is_empty() && p.literal.is_none()) =>
+            {
                 self.say(
                     codes::IDLE_ELEMENT,
                     span,
@@ -554,7 +556,8 @@ impl<'n> Writer<'n, '_, '_, '_> {
             return None;
         }
         let before = self.position[source.element] < self.position[index];
-        if !before || !matches!(element.kind, ElementKind::Block { instance: None, .. }) || !self.has_en(source.element) {
+        if !before || !matches!(element.kind, ElementKind::Block { instance: None, .. }) || !self.has_en(source.element)
+        {
             return None;
         }
         let eno = Source { element: source.element, pin: ENO };
@@ -642,8 +645,8 @@ impl<'n> Writer<'n, '_, '_, '_> {
         let span = element.span;
         let key = ty.text.to_ascii_uppercase();
         let user = self.owner.user.functions.contains_key(&key);
-        let values = self.arguments(index);
-        self.check_connected(index, &values, user);
+        let mut values = self.arguments(index);
+        self.check_connected(index, &mut values, user);
         let result = result_pin(element, self.owner);
         let en = self.has_en(index);
         let is_eno = |p: &Pin| p.name.eq_ignore_ascii_case("ENO");
@@ -753,19 +756,24 @@ impl<'n> Writer<'n, '_, '_, '_> {
     }
 
     /// Inputs of standard functions must be connected, but for those at the end of a list (IN3, IN4 ...).
-    fn check_connected(&mut self, index: usize, values: &[Option<Expr>], user: bool) {
+    fn check_connected(&mut self, index: usize, values: &mut [Option<Expr>], user: bool) {
         if user {
             return;
         }
         let element = self.at(index);
-        let numbered = |p: &Pin| p.name.len() > 2 && p.name[..2].eq_ignore_ascii_case("IN") && p.name[2..].bytes().all(|b| b.is_ascii_digit());
-        let connected = element.inputs.iter().zip(values).filter(|(p, v)| numbered(p) && v.is_some()).count();
-        for (pin, value) in values.iter().enumerate() {
+        let numbered = |p: &Pin| {
+            p.name.len() > 2
+                && p.name[..2].eq_ignore_ascii_case("IN")
+                && p.name[2..].bytes().all(|b| b.is_ascii_digit())
+        };
+        let connected = element.inputs.iter().zip(values.iter()).filter(|(p, v)| numbered(p) && v.is_some()).count();
+        for (pin, value) in values.iter_mut().enumerate() {
             let drawn = &element.inputs[pin];
             let optional = drawn.name.eq_ignore_ascii_case("EN") || (numbered(drawn) && connected >= 2);
             if value.is_none() && !optional {
                 let message = format!("{} is not connected", pin_text(element, pin));
                 self.say(codes::UNCONNECTED_PIN, drawn.span, message, "connect a variable, a constant or a block");
+                *value = Some(error(drawn.span));
             }
         }
     }
@@ -779,7 +787,11 @@ impl<'n> Writer<'n, '_, '_, '_> {
         user: bool,
         effects: bool,
     ) -> Option<Expr> {
-        if user || effects || values.iter().any(Option::is_none) || element.inputs.iter().any(|p| p.name.eq_ignore_ascii_case("EN")) {
+        if user
+            || effects
+            || values.iter().any(Option::is_none)
+            || element.inputs.iter().any(|p| p.name.eq_ignore_ascii_case("EN"))
+        {
             return None;
         }
         let values: Vec<Expr> = values.iter().flatten().cloned().collect();
@@ -801,7 +813,8 @@ impl<'n> Writer<'n, '_, '_, '_> {
     fn formal(&self, element: &'n Element, values: Vec<Option<Expr>>) -> Vec<Arg> {
         let connected: Vec<(&Pin, Expr)> =
             element.inputs.iter().zip(values).filter_map(|(pin, value)| value.map(|v| (pin, v))).collect();
-        let alone = connected.len() == 1 && (connected[0].0.name.eq_ignore_ascii_case("IN") || connected[0].0.name.is_empty());
+        let alone =
+            connected.len() == 1 && (connected[0].0.name.eq_ignore_ascii_case("IN") || connected[0].0.name.is_empty());
         let nameless = connected.iter().all(|(pin, _)| pin.name.is_empty());
         connected
             .into_iter()

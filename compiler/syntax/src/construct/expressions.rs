@@ -48,9 +48,7 @@ impl Context<'_> {
                 let name = self.name(l, l + hash as u32);
                 Literal { kind, prefix: Some(name), text: rest.into() }
             }
-            _ if text.as_bytes().contains(&FILLER) => {
-                plain(plain_kind(text), &text.replace(char::from(FILLER), ""))
-            }
+            _ if text.as_bytes().contains(&FILLER) => plain(plain_kind(text), &text.replace(char::from(FILLER), "")),
             _ => plain(plain_kind(text), text),
         };
         self.expr(ExprKind::Literal(literal), 0, l, r)

@@ -229,13 +229,7 @@ impl Reader<'_, '_> {
     }
 
     /// The elements that a condition depends on, with the condition itself.
-    fn condition_network(
-        &mut self,
-        span: Span,
-        connections: Vec<Connection>,
-        negated: bool,
-        graph: &Graph,
-    ) -> Network {
+    fn condition_network(&mut self, span: Span, connections: Vec<Connection>, negated: bool, graph: &Graph) -> Network {
         let mut wanted: Vec<u64> = connections.iter().map(|c| c.from).collect();
         let mut seen = FxHashSet::default();
         let mut elements = Vec::new();

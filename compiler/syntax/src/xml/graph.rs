@@ -43,10 +43,9 @@ impl Reader<'_, '_> {
         Some(match tag {
             "leftPowerRail" => ElementKind::LeftRail,
             "rightPowerRail" => ElementKind::RightRail,
-            "contact" => ElementKind::Contact {
-                variable: self.variable_in(node, "variable")?,
-                modifier: self.modifier(node),
-            },
+            "contact" => {
+                ElementKind::Contact { variable: self.variable_in(node, "variable")?, modifier: self.modifier(node) }
+            }
             "coil" => {
                 ElementKind::Coil { variable: self.variable_in(node, "variable")?, modifier: self.modifier(node) }
             }
@@ -73,8 +72,15 @@ impl Reader<'_, '_> {
             "jump" => ElementKind::Jump(self.name(node, "label")?),
             "return" => ElementKind::Return,
             "comment" => ElementKind::Comment(self.comment_text(node)),
-            "actionBlock" | "macroStep" | "step" | "transition" | "jumpStep" | "selectionDivergence"
-            | "selectionConvergence" | "simultaneousDivergence" | "simultaneousConvergence" => {
+            "actionBlock"
+            | "macroStep"
+            | "step"
+            | "transition"
+            | "jumpStep"
+            | "selectionDivergence"
+            | "selectionConvergence"
+            | "simultaneousDivergence"
+            | "simultaneousConvergence" => {
                 self.unsupported(node, "an element of a chart in LD or FBD", "draw it in a body of its own, in SFC");
                 return None;
             }

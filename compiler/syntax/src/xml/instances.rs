@@ -134,7 +134,8 @@ impl Reader<'_, '_> {
     fn program(&mut self, node: Node, task: Option<Name>) -> Option<ProgramDecl> {
         let name = self.name(node, "name")?;
         // 1.01 says `type`.
-        let attribute_name = if find(node, "typeName").is_none() && find(node, "type").is_some() { "type" } else { "typeName" };
+        let attribute_name =
+            if find(node, "typeName").is_none() && find(node, "type").is_some() { "type" } else { "typeName" };
         let program = self.name(node, attribute_name)?;
         let span = self.tag(node);
         Some(ProgramDecl { qualifier: None, name, task, program, args: Vec::new(), fb_tasks: Vec::new(), span })

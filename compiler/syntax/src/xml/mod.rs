@@ -15,9 +15,9 @@ mod pous;
 mod types;
 mod view;
 
+use crate::Profile;
 use crate::ast;
 use crate::report::Reporter;
-use crate::Profile;
 use nodes::{children, named};
 use plcc_diag::{Diagnostic, Diagnostics, FileId, Span, codes};
 use roxmltree::{Document, Node, ParsingOptions};
