@@ -340,19 +340,20 @@ impl<'n> Writer<'n, '_, '_, '_> {
             let locals = &self.owner.locals;
             let anything = writes.names.iter().any(|n| n == "%");
             let foreign = |name: &str| anything || (!locals.contains(name) && !name.starts_with('$'));
-            hit.extend(self.readers.iter().filter(|(n, _)| foreign(n)).flat_map(|(_, list)| list.iter().copied()));
+            let names: Vec<String> = self.readers.keys().filter(|n| foreign(n)).cloned().collect();
+            hit.extend(names.iter().filter_map(|n| self.readers.remove(n)).flatten());
         }
         for name in writes.names.iter().filter(|n| !n.starts_with('$')) {
-            hit.extend(self.readers.get(name).into_iter().flatten());
+            hit.extend(self.readers.remove(name).into_iter().flatten());
             // A located variable, or one behind a reference, may be any.
-            hit.extend(self.readers.get("%").into_iter().flatten());
+            hit.extend(self.readers.remove("%").into_iter().flatten());
         }
         self.keep(hit);
     }
 
     /// Takes all values that wait into temporaries: control may go another way from here on.
     fn flush_all(&mut self) {
-        let waiting = self.readers.values().flatten().copied().collect();
+        let waiting = std::mem::take(&mut self.readers).into_values().flatten().collect();
         self.keep(waiting);
     }
 
@@ -375,10 +376,6 @@ impl<'n> Writer<'n, '_, '_, '_> {
 
     fn push(&mut self, statement: Stmt, writes: Writes) {
         self.flush(&writes);
-        // Values whose last consumer has come need not be looked at again.
-        for name in &writes.names {
-            self.readers.remove(name);
-        }
         self.out.push(statement);
     }
 

@@ -50,7 +50,14 @@ struct Graph<'a, 'i> {
     to: Vec<Vec<usize>>,
     /// Elements of networks that feed conditions.
     networks: FxHashMap<u64, Element>,
+    /// Connectors among them, by name in upper case.
+    connectors: FxHashMap<String, Vec<u64>>,
+    /// What the transitions may still take in steps and elements: each lists its own.
+    left: usize,
 }
+
+/// Steps and elements that the transitions of one chart list together.
+const MAX_LISTED: usize = 300_000;
 
 impl Reader<'_, '_> {
     /// An `SFC`.
@@ -82,8 +89,14 @@ impl Reader<'_, '_> {
     }
 
     fn graph<'a, 'i>(&mut self, body: Node<'a, 'i>) -> Graph<'a, 'i> {
-        let mut graph =
-            Graph { parts: Vec::new(), by_id: FxHashMap::default(), to: Vec::new(), networks: FxHashMap::default() };
+        let mut graph = Graph {
+            parts: Vec::new(),
+            by_id: FxHashMap::default(),
+            to: Vec::new(),
+            networks: FxHashMap::default(),
+            connectors: FxHashMap::default(),
+            left: MAX_LISTED,
+        };
         let mut spans: FxHashMap<u64, Span> = FxHashMap::default();
         for node in children(body) {
             let tag = node.tag_name().name();
@@ -109,6 +122,9 @@ impl Reader<'_, '_> {
                 _ => {
                     if let Some(element) = self.element(node) {
                         self.unique(element.id, element.span, &mut spans);
+                        if let ElementKind::Connector(name) = &element.kind {
+                            graph.connectors.entry(name.text.to_ascii_uppercase()).or_default().push(element.id);
+                        }
                         graph.networks.insert(element.id, element);
                     }
                     continue;
@@ -167,8 +183,14 @@ impl Reader<'_, '_> {
     }
 
     fn transition(&mut self, index: usize, graph: &mut Graph, parts: &mut ChartParts) -> Transition {
-        let from = self.preceding(index, graph);
-        let to = self.succeeding(index, graph);
+        let (from, to) = match graph.left {
+            0 => (Vec::new(), Vec::new()),
+            _ => (self.preceding(index, graph), self.succeeding(index, graph)),
+        };
+        if graph.left > 0 && from.len() + to.len() >= graph.left {
+            self.too_large(graph.parts[index].1.span);
+        }
+        graph.left -= (from.len() + to.len()).min(graph.left);
         let (node, span) = (graph.parts[index].1.node, graph.parts[index].1.span);
         let priority = attribute(node, "priority").is_some_and(|p| !matches!(p.trim(), "" | "0"));
         let priority = if priority { self.expression_of(node, "priority", "the priority") } else { None };
@@ -229,19 +251,16 @@ impl Reader<'_, '_> {
     }
 
     /// The elements that a condition depends on, with the condition itself.
-    fn condition_network(&mut self, span: Span, connections: Vec<Connection>, negated: bool, graph: &Graph) -> Network {
+    fn condition_network(
+        &mut self,
+        span: Span,
+        connections: Vec<Connection>,
+        negated: bool,
+        graph: &mut Graph,
+    ) -> Network {
         let mut wanted: Vec<u64> = connections.iter().map(|c| c.from).collect();
         let mut seen = FxHashSet::default();
         let mut elements = Vec::new();
-        let continued = |name: &str| {
-            let ends = graph.networks.values();
-            let mut ends: Vec<u64> = ends
-                .filter(|e| matches!(&e.kind, ElementKind::Connector(n) if n.text.eq_ignore_ascii_case(name)))
-                .map(|e| e.id)
-                .collect();
-            ends.sort_unstable();
-            ends
-        };
         while let Some(id) = wanted.pop() {
             if !seen.insert(id) {
                 continue;
@@ -250,10 +269,15 @@ impl Reader<'_, '_> {
             let Some(element) = graph.networks.get(&id) else { continue };
             wanted.extend(element.inputs.iter().flat_map(|p| &p.connections).map(|c| c.from));
             if let ElementKind::Continuation(name) = &element.kind {
-                wanted.extend(continued(&name.text));
+                wanted.extend(graph.connectors.get(&name.text.to_ascii_uppercase()).into_iter().flatten());
             }
             elements.push(element.clone());
+            if elements.len() > graph.left {
+                self.too_large(span);
+                break;
+            }
         }
+        graph.left -= elements.len().min(graph.left);
         elements.sort_by_key(|e| e.span.start);
         let pin = Pin {
             name: Default::default(),
@@ -276,6 +300,11 @@ impl Reader<'_, '_> {
             span,
         });
         Network { notation: Notation::Ld, elements, span }
+    }
+
+    fn too_large(&mut self, span: Span) {
+        let message = format!("the transitions of this chart list more than {MAX_LISTED} steps and elements");
+        self.misplaced(span, message, "divide the chart");
     }
 
     /// The steps before a transition.

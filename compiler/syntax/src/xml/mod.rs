@@ -27,6 +27,10 @@ use view::View;
 const MAX_BYTES: usize = 64 << 20;
 /// How deep elements may nest; what editors write stays below 40.
 const MAX_DEPTH: usize = 200;
+/// Elements and texts of a file.
+const MAX_NODES: u32 = 3_000_000;
+/// Attributes of one element: the XML library compares each with each.
+const MAX_ATTRIBUTES: usize = 1000;
 /// How the name spaces of PLCopen TC6 begin.
 const NAMESPACE: &str = "http://www.plcopen.org/xml/tc6";
 
@@ -43,19 +47,15 @@ pub fn parse_xml(file: FileId, text: &str, profile: Profile, diags: &mut Diagnos
         );
         return ast::File::default();
     }
-    if let Some(at) = too_deep(text) {
+    if let Some((at, message)) = too_much(text) {
         let at = at as u32;
         diags.push(
-            Diagnostic::new(
-                codes::XML_SYNTAX,
-                Span::new(file, at, at),
-                format!("more than {MAX_DEPTH} elements are open here"),
-            )
-            .help("PLCopen XML never nests so deep; export the file again"),
+            Diagnostic::new(codes::XML_SYNTAX, Span::new(file, at, at), message)
+                .help("no editor writes such PLCopen XML; export the file again"),
         );
         return ast::File::default();
     }
-    let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     let document = match Document::parse_with_options(text, options) {
         Ok(document) => document,
         Err(error) => {
@@ -88,8 +88,9 @@ pub fn parse_xml(file: FileId, text: &str, profile: Profile, diags: &mut Diagnos
     out
 }
 
-/// Where elements nest too deep, found before anything recurses over them. Comments and CDATA sections are stepped over.
-fn too_deep(text: &str) -> Option<usize> {
+/// Where elements nest too deep or have too many attributes, found before anything recurses over them or compares them.
+/// Comments and CDATA sections are stepped over.
+fn too_much(text: &str) -> Option<(usize, String)> {
     let bytes = text.as_bytes();
     let (mut at, mut depth) = (0, 0usize);
     while let Some(next) = bytes[at..].iter().position(|b| *b == b'<') {
@@ -108,9 +109,12 @@ fn too_deep(text: &str) -> Option<usize> {
                 depth = depth.saturating_sub(1);
             } else if !rest[..tag].ends_with("/>") {
                 depth += 1;
-                if depth > MAX_DEPTH {
-                    return Some(at);
-                }
+            }
+            if depth > MAX_DEPTH {
+                return Some((at, format!("more than {MAX_DEPTH} elements are open here")));
+            }
+            if tag > MAX_ATTRIBUTES && rest[..tag].bytes().filter(|b| *b == b'=').nth(MAX_ATTRIBUTES).is_some() {
+                return Some((at, format!("this element has more than {MAX_ATTRIBUTES} attributes")));
             }
             tag
         };
