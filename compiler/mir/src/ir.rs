@@ -41,6 +41,8 @@ pub struct Program {
     pub region_bytes: u32,
     /// Where the frames of a task start.
     pub frame_base: u32,
+    /// What references and pointers reach (start, length), besides what an [`Inst::AddressOf`] says.
+    pub addressable: (u32, u32),
     /// What is not 0 at a cold start.
     pub initial: Vec<Segment>,
     /// Byte ranges (start, length) that a warm start keeps; sorted, disjoint.
@@ -160,6 +162,8 @@ pub enum Inst {
         dst: ValueId,
         /// Of what; without a bit.
         place: Place,
+        /// How far a reference to it reaches from there, bytes; 0 if no further than the addressable part.
+        bytes: u32,
     },
     /// Calls a function of the program. A fault in it leaves this function too, unless `status` catches it.
     Call {
@@ -173,8 +177,8 @@ pub enum Inst {
         args: Vec<ValueId>,
         /// I32: the fault number, 0 if none. A `Deadline` is never caught.
         status: Option<ValueId>,
-        /// Where.
-        source: SourceId,
+        /// Where, and for whom: an instance that it names stands for that of a callee without one. It owes nothing.
+        exit: Exit,
     },
     /// Calls a pure body of the standard library.
     CallRt {
@@ -205,14 +209,33 @@ pub enum Inst {
         fault: Fault,
         /// Offending values, I64; for `Within` the value and its limits are added in front.
         operands: Vec<ValueId>,
-        /// Where.
-        source: SourceId,
+        /// Where, and what is to be done before.
+        exit: Exit,
     },
     /// At the back-edge of a loop without a small known trip count: leaves with `Deadline` if the watchdog expired.
     Poll {
-        /// Where.
-        source: SourceId,
+        /// Where, and what is to be done before.
+        exit: Exit,
     },
+}
+
+/// How a check, a poll or a call leaves the function with a fault.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Exit {
+    /// Where it stands.
+    pub source: SourceId,
+    /// The instance that the fault names, if it is not the function's own: that of code that was inlined.
+    pub instance: Option<Box<Place>>,
+    /// Stores that are due before, in order. Lowering makes none; the optimiser holds variables in values and owes their
+    /// memory, which a fault must find as if each store had been done in its place (semantics.md \[E1\]).
+    pub owed: Vec<(Place, ValueId)>,
+}
+
+impl Exit {
+    /// An exit of code that was not inlined and owes nothing.
+    pub fn at(source: SourceId) -> Self {
+        Self { source, instance: None, owed: Vec::new() }
+    }
 }
 
 /// What a check demands.
