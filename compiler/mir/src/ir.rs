@@ -72,7 +72,7 @@ pub struct Source {
 }
 
 /// A function: the body of a POU or the entry of a task.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Func {
     /// The POU, `Owner.Action`, or `task Name`.
     pub name: String,
@@ -255,7 +255,7 @@ pub enum Cond {
 }
 
 /// One to three operands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Args {
     /// Of a unary operation.
     One([ValueId; 1]),
@@ -337,7 +337,7 @@ pub enum Base {
 
 /// A place in memory: base + offset + sum of index * stride. Two places with the same base overlap only if these sums can
 /// meet, so that aliasing is answered by arithmetic on the bounds and not by pointers.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Place {
     /// Where it starts.
     pub base: Base,
@@ -359,7 +359,7 @@ pub struct TextPlace {
 }
 
 /// A variable part of a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IndexTerm {
     /// The index, I64.
     pub value: ValueId,

@@ -31,6 +31,7 @@ use plcc_hir::app::Application;
 use plcc_hir::{Defs, PouId};
 use reach::Reach;
 use rustc_hash::FxHashMap;
+pub(crate) use task::frame_bytes;
 
 /// Which faults are looked for (`--checks`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,7 +6,10 @@
 //!
 //! The order is a table, [`passes`]; the tests run the interpreter after each of its rows.
 
+mod algebra;
 mod clean;
+mod fold;
+mod inline;
 mod rewrite;
 
 use crate::ir::{Func, Program};
@@ -28,7 +31,7 @@ impl std::fmt::Debug for Pass {
 
 /// The passes in their order; a pass may come more than once.
 pub fn passes() -> &'static [Pass] {
-    &[Pass { name: "clean", run: |p| each(p, clean::run) }]
+    &[Pass { name: "tidy", run: |p| each(p, tidy) }, Pass { name: "inline", run: |p| inline::run(p, tidy) }]
 }
 
 /// Runs all passes.
@@ -43,6 +46,13 @@ pub fn optimise(program: &mut Program) {
             }
         }
     }
+}
+
+/// Constants and algebra, then what that left behind.
+fn tidy(func: &mut Func) {
+    clean::run(func);
+    fold::run(func);
+    clean::run(func);
 }
 
 /// A pass over functions that needs to know nothing of the others.
