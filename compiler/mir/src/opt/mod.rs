@@ -18,6 +18,7 @@ mod inline;
 mod loops;
 mod promote;
 mod rewrite;
+mod select;
 mod ssa;
 
 use crate::ir::{Func, Program};
@@ -43,25 +44,18 @@ pub fn passes() -> &'static [Pass] {
     const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
     const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
     const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
+    const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
     const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
-    &[
+    #[rustfmt::skip]
+    const PASSES: &[Pass] = &[
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
-        FRAMES,
-        TIDY,
-        FORWARD,
-        TIDY,
-        DEAD_STORES,
-        TIDY,
-        PROMOTE,
-        TIDY,
-        HOIST,
-        TIDY,
-        FORWARD,
-        DEAD_STORES,
-        TIDY,
-    ]
+        FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
+        SELECT, TIDY, FORWARD, DEAD_STORES, TIDY,
+        PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+    ];
+    PASSES
 }
 
 /// Runs all passes.
