@@ -64,7 +64,7 @@ impl Front {
 
     /// Code for the checks (`all`, `none` or a list) and the optimisation of the command line.
     pub fn compile(&self, checks: &str, opt: OptArg) -> Result<Back, String> {
-        self.back(&CodeArgs { checks: Some(checks.into()), opt }).map_err(|e| e.message)
+        self.back(&CodeArgs { checks: Some(checks.into()), opt: Some(opt) }).map_err(|e| e.message)
     }
 
     pub(crate) fn back(&self, code: &CodeArgs) -> Result<Back, Failure> {
