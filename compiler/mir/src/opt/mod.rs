@@ -17,7 +17,9 @@ mod hoist;
 mod inline;
 mod loops;
 mod promote;
+mod proven;
 mod rewrite;
+mod scale;
 mod select;
 mod ssa;
 
@@ -54,6 +56,8 @@ pub fn passes() -> &'static [Pass] {
         FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
         SELECT, TIDY, FORWARD, DEAD_STORES, TIDY,
         PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        SELECT, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
     ];
     PASSES
 }
