@@ -1,7 +1,7 @@
 //! All programs in all lanes, in one run, to a report below `target/bench-report` (Markdown, JSON, SVG).
 //!
 //! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a tenth of the
-//! time. `cargo test` runs them for some cycles: every lane must give the same outputs after each cycle.
+//! time; `cargo test -p plcc-benches --bench report -- --brief pid` prints medians at once. `cargo test` runs them for some cycles: every lane must give the same outputs after each cycle.
 
 use plcc::bench::measure::{Plan, measure};
 use plcc::bench::report::{LaneReport, ProgramReport, Report, figure, whole};
@@ -22,6 +22,9 @@ fn main() -> ExitCode {
     let folder = tempfile::tempdir().expect("a folder for what the C compiler makes");
     let result = if has(count::FLAG) {
         count::run(&chosen, folder.path())
+    } else if has("--brief") {
+        println!("median cycle, ns: program, then each lane and its ratio to C -O2");
+        chosen.iter().try_for_each(|program| brief(program, folder.path()))
     } else if has("--bench") {
         let plan = if has("--quick") { Plan::QUICK } else { Plan::FULL };
         write_report(&chosen, &plan, folder.path())
@@ -52,6 +55,23 @@ fn check(program: &Program, folder: &Path) -> Result<(), String> {
     let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
     let measured = measure(&mut running, &Plan::SMOKE, Scale::calibrate()).map_err(|f| named(format!("{f:?}")))?;
     assert_eq!(measured.times.len(), count);
+    Ok(())
+}
+
+/// Medians of a few lanes, a line a program: what one looks at while working on the compiler.
+fn brief(program: &Program, folder: &Path) -> Result<(), String> {
+    let named = |e: String| format!("{}: {e}", program.name);
+    let mut lanes = Lanes::new(program, Choice::Few { linked: false }, 400, folder).map_err(named)?;
+    lanes.compare(400).map_err(named)?;
+    let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
+    let plan = Plan { samples: 100, sample_ns: 10_000.0, cycles: 400, repeats: 1 };
+    let measured = measure(&mut running, &plan, Scale::calibrate()).map_err(|f| named(format!("{f:?}")))?;
+    let reports = running.iter().zip(&measured.times).map(|(lane, times)| LaneReport::new(lane.name, times));
+    let medians: Vec<(&str, f64)> =
+        reports.map(|lane| (lane.name, figure::median(&lane).unwrap_or(f64::NAN))).collect();
+    let base = medians.iter().find(|(name, _)| *name == reference::O2.lane).map_or(f64::NAN, |(_, ns)| *ns);
+    let cells = medians.iter().map(|(name, ns)| format!("{name} {ns:.1} ({:.2})", ns / base));
+    println!("{:10} {}", program.name, cells.collect::<Vec<_>>().join(", "));
     Ok(())
 }
 
