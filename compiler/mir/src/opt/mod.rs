@@ -1,0 +1,98 @@
+//! The optimiser: passes from MIR to MIR, one file each.
+//!
+//! In: a verified program as lowering made it. Out: a verified program with the same meaning: after every scan the same
+//! bytes in the region (but for the frames, which no one sees), the same fault with the same operands, and at a fault the
+//! memory of the statement order. Results of reals are the same to the last bit: nothing is reassociated or contracted.
+//!
+//! The order is a table, [`passes`]; the tests run the interpreter after each of its rows.
+
+mod algebra;
+mod alias;
+mod clean;
+mod dead_stores;
+mod fold;
+mod forward;
+mod frames;
+mod hoist;
+mod inline;
+mod loops;
+mod promote;
+mod proven;
+mod rewrite;
+mod scale;
+mod select;
+mod ssa;
+
+use crate::ir::{Func, Program};
+
+/// A pass.
+#[derive(Clone, Copy)]
+pub struct Pass {
+    /// Its name, as reports show it.
+    pub name: &'static str,
+    /// Rewrites the program.
+    pub run: fn(&mut Program),
+}
+
+impl std::fmt::Debug for Pass {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// The passes in their order; a pass may come more than once.
+pub fn passes() -> &'static [Pass] {
+    const TIDY: Pass = Pass { name: "tidy", run: |p| each(p, tidy) };
+    const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
+    const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
+    const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
+    const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
+    const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
+    const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
+    #[rustfmt::skip]
+    const PASSES: &[Pass] = &[
+        TIDY,
+        Pass { name: "inline", run: |p| inline::run(p, tidy) },
+        FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
+        SELECT, TIDY, FORWARD, DEAD_STORES, TIDY,
+        PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        SELECT, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
+    ];
+    PASSES
+}
+
+/// Runs all passes.
+pub fn optimise(program: &mut Program) {
+    for pass in passes() {
+        (pass.run)(program);
+        if cfg!(debug_assertions) {
+            let problems = crate::verify::verify(program);
+            if !problems.is_empty() {
+                let list: String = problems.iter().map(|p| format!("{p}\n")).collect();
+                plcc_diag::bug!("after the pass `{}`:\n{list}{}", pass.name, crate::print::program(program, None));
+            }
+        }
+    }
+}
+
+/// Constants and algebra, then what that left behind.
+fn tidy(func: &mut Func) {
+    clean::run(func);
+    fold::run(func);
+    clean::run(func);
+}
+
+/// A pass over functions that asks what may be the same memory.
+fn with_facts(program: &mut Program, run: fn(&mut Func, &alias::Alias)) {
+    let facts = alias::Facts::new(program);
+    for (id, func) in program.funcs.iter_mut().enumerate() {
+        let alias = alias::Alias::new(&facts, crate::ir::FuncId::from_usize(id), func);
+        run(func, &alias);
+    }
+}
+
+/// A pass over functions that needs to know nothing of the others.
+fn each(program: &mut Program, run: fn(&mut Func)) {
+    program.funcs.iter_mut().for_each(run);
+}
