@@ -681,7 +681,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
         let bare = match self.as_operator(element, &key, &values, user, effects) {
             Some(operator) => operator,
             None => {
-                let mut args = self.formal(element, values);
+                let mut args = self.formal(element, values, !outputs.is_empty() || hidden_eno.is_some());
                 for (number, name) in &outputs {
                     args.push(output(&element.outputs[*number].name, variable(name, span), span));
                 }
@@ -806,12 +806,13 @@ impl<'n> Writer<'n, '_, '_, '_> {
         values.into_iter().reduce(|a, b| binary(*op, a, b, span))
     }
 
-    /// The arguments by their names; a single one without.
-    fn formal(&self, element: &'n Element, values: Vec<Option<Expr>>) -> Vec<Arg> {
+    /// The arguments by their names; a single one without, unless outputs follow.
+    fn formal(&self, element: &'n Element, values: Vec<Option<Expr>>, outputs: bool) -> Vec<Arg> {
         let connected: Vec<(&Pin, Expr)> =
             element.inputs.iter().zip(values).filter_map(|(pin, value)| value.map(|v| (pin, v))).collect();
-        let alone =
-            connected.len() == 1 && (connected[0].0.name.eq_ignore_ascii_case("IN") || connected[0].0.name.is_empty());
+        let alone = !outputs
+            && connected.len() == 1
+            && (connected[0].0.name.eq_ignore_ascii_case("IN") || connected[0].0.name.is_empty());
         let nameless = connected.iter().all(|(pin, _)| pin.name.is_empty());
         connected
             .into_iter()
