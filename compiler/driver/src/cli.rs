@@ -38,6 +38,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Draw a program: its charts as SVG.
     Graph(GraphArgs),
+    /// Write PLCopen XML as text.
+    Convert(ConvertArgs),
     /// Explain a diagnostic code, a standard function or a standard function block.
     Explain {
         /// `E0301`, `LIMIT`, `TON`.
@@ -53,7 +55,7 @@ pub enum Command {
 /// What is compiled, and how its sources are read.
 #[derive(Debug, Clone, Args)]
 pub struct SourceArgs {
-    /// project.toml, source files (.st .il .sfc .iec .txt), folders or globs.
+    /// project.toml, source files (.st .il .sfc .iec .txt .xml), folders or globs.
     #[arg(required = true, value_name = "project.toml|FILES")]
     pub files: Vec<String>,
     /// How strictly sources are read; the project file decides when this is not given.
@@ -179,6 +181,27 @@ pub struct CheckArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub sources: SourceArgs,
+}
+
+/// `plcc convert`.
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    /// Into what.
+    #[arg(long, value_enum)]
+    pub to: ToArg,
+    /// The file to write; standard output without it.
+    #[arg(short, long, value_name = "out.st")]
+    pub output: Option<PathBuf>,
+}
+
+/// `--to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ToArg {
+    /// Structured Text; Instruction List and charts keep their text notations.
+    St,
 }
 
 /// `plcc graph`.

@@ -4,6 +4,7 @@
 pub mod bench;
 mod build;
 pub mod cli;
+mod convert;
 mod engines;
 mod explain;
 mod failure;
@@ -54,6 +55,7 @@ pub fn execute(cli: Cli) -> u8 {
         Command::Run(args) => run(&args, color),
         Command::Check(args) => check(&args.sources, color),
         Command::Graph(args) => graph::graph(&args, color),
+        Command::Convert(args) => convert::convert(&args, color),
         Command::Explain { name } => explain::page(&name).map(|page| {
             print!("{page}");
             0

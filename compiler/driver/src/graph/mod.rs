@@ -56,7 +56,7 @@ pub fn graph(args: &GraphArgs, color: crate::cli::Color) -> Result<u8, Failure> 
     Ok(0)
 }
 
-fn write(text: &str, output: Option<&std::path::Path>) -> Result<(), Failure> {
+pub(crate) fn write(text: &str, output: Option<&std::path::Path>) -> Result<(), Failure> {
     let Some(path) = output.filter(|path| *path != std::path::Path::new("-")) else {
         use std::io::Write;
         return match std::io::stdout().lock().write_all(text.as_bytes()) {

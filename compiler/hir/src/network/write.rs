@@ -404,8 +404,9 @@ impl<'n> Writer<'n, '_, '_, '_> {
             // A connection that was reported counts as one.
             return (!found.connections.is_empty()).then(|| error(span));
         }
-        let value = or(values, span)?;
-        Some(self.modified(value, found.modifier, element))
+        // A value stands where it is used: messages name the pin, and arguments have the order of the pins.
+        let value = Expr { span: found.span, ..or(values, span)? };
+        Some(Expr { span: found.span, ..self.modified(value, found.modifier, element) })
     }
 
     /// An input that must be connected.
@@ -583,8 +584,11 @@ impl<'n> Writer<'n, '_, '_, '_> {
         writes.truncate(1);
         let mut in_out: FxHashMap<String, Expr> = FxHashMap::default();
         for (pin, value) in element.inputs.iter().zip(values) {
-            let Some(value) = value else { continue };
+            let Some(mut value) = value else { continue };
             if is_in_out(element, pin) {
+                if let ExprKind::Name(name) = &mut value.kind {
+                    name.span = pin.span;
+                }
                 reads(&value, &mut writes);
                 in_out.insert(pin.name.to_ascii_uppercase(), value.clone());
             }
