@@ -11,6 +11,9 @@ use plcc_syntax::ast::{self, Body, Condition, Item, SfcElement};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+/// Comments that are drawn in networks, by the place of what holds the body.
+type Remarks = HashMap<Span, Vec<String>>;
+
 /// Writes the XML files of the command line as text.
 pub fn convert(args: &ConvertArgs, color: Color) -> Result<u8, Failure> {
     let crate::cli::ToArg::St = args.to;
@@ -33,8 +36,7 @@ pub fn convert(args: &ConvertArgs, color: Color) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Comments that are drawn in networks, by the place of what holds the body.
-fn remarks(parsed: &Parsed) -> HashMap<Span, Vec<String>> {
+fn remarks(parsed: &Parsed) -> Remarks {
     let mut found = HashMap::new();
     let pous = parsed.files.iter().flat_map(|f| &f.3.items).filter_map(|i| match i {
         Item::Pou(pou) => Some(pou),
@@ -54,13 +56,7 @@ fn remarks(parsed: &Parsed) -> HashMap<Span, Vec<String>> {
     found
 }
 
-fn write(
-    file: &ast::File,
-    name: &str,
-    sources: &SourceMap,
-    checked: &Checked,
-    remarks: &HashMap<Span, Vec<String>>,
-) -> String {
+fn write(file: &ast::File, name: &str, sources: &SourceMap, checked: &Checked, remarks: &Remarks) -> String {
     let mut out = format!("// {}, from PLCopen XML\n", Path::new(name).file_name().unwrap_or_default().display());
     for item in &file.items {
         out.push('\n');
@@ -100,7 +96,7 @@ struct Words<'a> {
     /// Types of hidden variables.
     types: HashMap<String, String>,
     /// The file, to find bodies as they were written, and remarks.
-    bodies: Option<(&'a ast::File, &'a SourceMap, &'a HashMap<Span, Vec<String>>)>,
+    bodies: Option<(&'a ast::File, &'a SourceMap, &'a Remarks)>,
 }
 
 impl Words<'_> {
