@@ -52,6 +52,7 @@ pub fn execute(cli: Cli) -> u8 {
     let result = match cli.command {
         Command::Build(args) => build::build(&args, color),
         Command::Run(args) => run(&args, color),
+        Command::Bench(args) => bench::command::bench(&args, color),
         Command::Check(args) => check(&args.sources, color),
         Command::Graph(args) => graph::graph(&args, color),
         Command::Explain { name } => explain::page(&name).map(|page| {

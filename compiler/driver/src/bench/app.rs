@@ -14,7 +14,9 @@ use plcc_mir::interp::Interp;
 use plcc_mir::ir::Program;
 use plcc_runtime::engine::{Engine, InitFn, NativeEngine, Region, ScanFn};
 use plcc_runtime::image::Image;
+use std::cell::Cell;
 use std::path::Path;
+use std::rc::Rc;
 
 /// CPU time of this process, milliseconds.
 pub fn cpu_ms() -> f64 {
@@ -113,6 +115,26 @@ impl Back {
         Interpreter(Interp::new(&self.compiled.program))
     }
 
+    /// The reference interpreter, which adds up how many operations it executes.
+    pub fn counting_interpreter(&self) -> (impl Engine + use<>, Rc<Cell<u64>>) {
+        let operations = Rc::new(Cell::new(0));
+        (Counting { interp: Interp::new(&self.compiled.program), operations: Rc::clone(&operations) }, operations)
+    }
+
+    /// CPU milliseconds of each pass of the optimiser over a program of the plain lowering, in the order of their first run.
+    pub fn passes_ms(&self) -> Vec<(&'static str, f64)> {
+        let mut program = self.compiled.program.clone();
+        let mut passes: Vec<(&'static str, f64)> = Vec::new();
+        for pass in plcc_mir::opt::passes() {
+            let ms = timed(|| (pass.run)(&mut program)).1;
+            match passes.iter_mut().find(|(name, _)| *name == pass.name) {
+                Some((_, sum)) => *sum += ms,
+                None => passes.push((pass.name, ms)),
+            }
+        }
+        passes
+    }
+
     /// Code in memory, and the CPU milliseconds to make it.
     pub fn jit(&self) -> (impl Engine + use<>, f64) {
         let (code, ms) = timed(|| plcc_codegen::jit::compile(&self.compiled.program));
@@ -130,6 +152,22 @@ impl Back {
         link::shared(&self.object(), path).map_err(|e| e.message)?;
         // SAFETY: the object has no initialisers but those of the runtime archive, and these entry points.
         unsafe { Shared::load(path, "plc_app_init", "plc_app_scan") }
+    }
+}
+
+struct Counting {
+    interp: Interp,
+    operations: Rc<Cell<u64>>,
+}
+
+impl Engine for Counting {
+    fn init(&mut self, mem: &mut Region, cold: bool) {
+        self.interp.init(mem.as_mut_slice(), cold);
+    }
+    fn scan(&mut self, mem: &mut Region, task: u32, now_ns: i64) -> u32 {
+        let (status, operations) = self.interp.scan_counted(mem.as_mut_slice(), task, now_ns);
+        self.operations.set(self.operations.get() + operations);
+        status
     }
 }
 
