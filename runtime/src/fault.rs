@@ -1,28 +1,39 @@
 //! Tells a fault: name, place, POU and instance, the offending values, the cycle (semantics.md \[E1\]).
 
-use crate::engine::Region;
-use crate::image::{Image, TypeDesc};
+use crate::engine::Part;
+use crate::image::{Image, Statement, TypeDesc};
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::region;
 
-/// The text for standard error.
-pub fn describe(image: &Image, mem: &Region, number: u32, task: usize, cycle: u64) -> String {
+/// The text for standard error. The part holds the fault record.
+pub fn describe(image: &Image, part: &Part, number: u32, task: usize, cycle: u64) -> String {
     let Some(fault) = Fault::from_number(number) else {
         return format!("error[E0600]: the program stopped with the unknown status {number} in cycle {cycle}\n");
     };
-    let source = image.sources.get(mem.read_u32(region::FAULT_SOURCE) as usize);
-    let operands = [0, 1, 2].map(|n| mem.read_i64(region::FAULT_OPERANDS + 8 * n));
+    let source = image.sources.get(part.read_u32(region::FAULT_SOURCE) as usize);
+    let operands = [0, 1, 2].map(|n| part.read_i64(region::FAULT_OPERANDS + 8 * n));
     let mut out = format!("error[{}]: {}\n", fault.code(), fault.title());
     if let Some(source) = source {
-        let file = image.files.get(source.file as usize).map_or("?", String::as_str);
-        out.push_str(&format!("  --> {file}:{}:{}\n", source.line, source.column));
-        let instance = match mem.read_u32(region::FAULT_INSTANCE) {
+        let file = |of: u32| image.files.get(of as usize).map_or("?", String::as_str);
+        out.push_str(&format!("  --> {}:{}:{}\n", file(source.file), source.line, source.column));
+        // The instance is that of the POU itself or, of a function, that of its caller.
+        let call = part.read_u32(region::FAULT_CALL).checked_sub(1).and_then(|n| image.sources.get(n as usize));
+        let owner = call.unwrap_or(source);
+        let instance = match part.read_u32(region::FAULT_INSTANCE) {
             0 => None,
-            offset => instance_path(image, &source.pou, offset),
+            offset => instance_path(image, &owner.pou, offset + part.start() as u32),
         };
-        match instance {
-            Some(path) => out.push_str(&format!("  in {} (instance {path})\n", source.pou)),
-            None => out.push_str(&format!("  in {}\n", source.pou)),
+        let instance = instance.map(|path| format!(" (instance {path})")).unwrap_or_default();
+        match call {
+            Some(call) => out.push_str(&format!(
+                "  in {}\n  called from {}{instance} at {}:{}:{}\n",
+                source.pou,
+                call.pou,
+                file(call.file),
+                call.line,
+                call.column
+            )),
+            None => out.push_str(&format!("  in {}{instance}\n", source.pou)),
         }
         out.push_str(&format!("  {}\n", fault.details(&source.what, operands)));
     }
@@ -33,6 +44,15 @@ pub fn describe(image: &Image, mem: &Region, number: u32, task: usize, cycle: u6
     }
     out.push_str(&format!("cycle {cycle}\n"));
     out
+}
+
+/// The statement in which the recorded fault happened, and the instance's offset in the part. Of a function, whose own
+/// variables are gone, the statement that called it.
+pub fn statement<'i>(image: &'i Image, part: &Part) -> (Option<&'i Statement>, u32) {
+    let row = |n: u32| image.sources.get(n as usize);
+    let source = part.read_u32(region::FAULT_CALL).checked_sub(1).map_or(part.read_u32(region::FAULT_SOURCE), |n| n);
+    let statement = row(source).and_then(|s| s.statement).and_then(|n| image.statements.get(n as usize));
+    (statement, part.read_u32(region::FAULT_INSTANCE))
 }
 
 /// The path of the instance of a POU that starts at an offset. The variables of a program are roots of their own; its name
@@ -103,8 +123,7 @@ mod tests {
     /// `Main` at 64: `b : ARRAY [1..2] OF Outer` (16 bytes each), whose first variable is `i : Inner`, then `n : INT`.
     fn image() -> Image {
         let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
-        let root =
-            |name: &str, offset, ty| Root { name: name.into(), offset, bit: None, ty, constant: false, retain: false };
+        let root = |name: &str, offset, ty| Root { name: name.into(), offset, ty, ..Root::default() };
         Image {
             types: vec![
                 TypeDesc::Elem(Elem::Int.code()),
