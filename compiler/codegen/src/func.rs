@@ -13,7 +13,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch};
 use index_vec::IndexVec;
 use plcc_mir::dominators::Dominators;
 use plcc_mir::ir::{
-    Base, Block, BlockId, Cond, Func, FuncId, Inst, Place, Program, SourceId, Target, Term, TextPlace, ValueId,
+    Base, Block, BlockId, Cond, Exit, Func, FuncId, Inst, Place, Program, Target, Term, TextPlace, ValueId,
 };
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::Repr;
@@ -96,6 +96,8 @@ pub struct Translator<'a, 'f> {
     rt_callees: FxHashMap<&'static str, FuncRef>,
     /// Write the fault record and leave; parameters: number, source, three operands.
     fault: Tails,
+    /// The same for code that was inlined: the sixth parameter is the instance that the fault names.
+    inlined_fault: Tails,
     /// Leave with the status of a callee, the parameter.
     leave: Tails,
 }
@@ -121,6 +123,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             callees: FxHashMap::default(),
             rt_callees: FxHashMap::default(),
             fault: Tails::default(),
+            inlined_fault: Tails::default(),
             leave: Tails::default(),
             b,
         }
@@ -157,13 +160,12 @@ impl<'a, 'f> Translator<'a, 'f> {
 
     fn finish(mut self) {
         self.b.set_srcloc(SourceLoc::default());
-        for block in std::mem::take(&mut self.fault.blocks) {
+        let faults = std::mem::take(&mut self.fault.blocks);
+        for block in faults.into_iter().chain(std::mem::take(&mut self.inlined_fault.blocks)) {
             self.fault_body(block);
         }
         for block in std::mem::take(&mut self.leave.blocks) {
-            self.b.switch_to_block(block);
-            let status = self.b.block_params(block)[0];
-            self.return_with_status(status);
+            self.leave_body(block);
         }
         self.b.seal_all_blocks();
         self.b.finalize(self.env.config);
@@ -200,8 +202,8 @@ impl<'a, 'f> Translator<'a, 'f> {
 
     fn inst(&mut self, inst: &'a Inst) {
         let loc = match inst {
-            Inst::Call { source, .. } | Inst::Check { source, .. } | Inst::Poll { source } => {
-                SourceLoc::new(source.raw())
+            Inst::Call { exit, .. } | Inst::Check { exit, .. } | Inst::Poll { exit } => {
+                SourceLoc::new(exit.source.raw())
             }
             _ => SourceLoc::default(),
         };
@@ -226,28 +228,28 @@ impl<'a, 'f> Translator<'a, 'f> {
             }
             Inst::Copy { dst, src, bytes } => self.copy(dst, src, *bytes),
             Inst::Zero { dst, bytes } => self.zero(dst, *bytes),
-            Inst::AddressOf { dst, place } => {
+            Inst::AddressOf { dst, place, .. } => {
                 let pointer = self.pointer(place);
                 let offset = self.b.ins().isub(pointer, self.region);
                 let value = self.b.ins().ireduce(types::I32, offset);
                 self.values[*dst] = Some(value);
             }
-            Inst::Call { dst, callee, instance, args, status, .. } => {
-                self.call(*dst, *callee, instance.as_ref(), args, *status);
+            Inst::Call { dst, callee, instance, args, status, exit } => {
+                self.call(*dst, *callee, instance.as_ref(), args, *status, exit);
             }
             Inst::CallRt { dst, func, args } => {
                 let args = self.values(args);
                 self.call_rt(*dst, func.symbol, &args);
             }
             Inst::CallText { dst, func, texts, args } => self.call_text(*dst, func, texts, args),
-            Inst::Check { cond, fault, operands, source } => self.check(*cond, *fault, operands, *source),
-            Inst::Poll { source } => {
+            Inst::Check { cond, fault, operands, exit } => self.check(*cond, *fault, operands, exit),
+            Inst::Poll { exit } => {
                 // Keeps the load where it is, whatever the code generator's level of optimisation.
                 self.b.ins().sequence_point();
                 let flag = self.b.ins().load(types::I32, memory(), self.region, DEADLINE_FLAG as i32);
                 let (failed, next) = (self.cold_block(), self.b.create_block());
                 self.b.ins().brif(flag, failed, &[], next, &[]);
-                self.leave_with_fault(failed, Fault::Deadline, *source, &[]);
+                self.leave_with_fault(failed, Fault::Deadline, exit, &[]);
                 self.b.switch_to_block(next);
             }
         }
@@ -259,7 +261,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         block
     }
 
-    fn check(&mut self, cond: Cond, fault: Fault, operands: &[ValueId], source: SourceId) {
+    fn check(&mut self, cond: Cond, fault: Fault, operands: &[ValueId], exit: &Exit) {
         let (failed, next) = (self.cold_block(), self.b.create_block());
         let mut values = Vec::new();
         match cond {
@@ -278,7 +280,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             }
         }
         values.extend(self.values(operands));
-        self.leave_with_fault(failed, fault, source, &values);
+        self.leave_with_fault(failed, fault, exit, &values);
         self.b.switch_to_block(next);
     }
 
@@ -292,11 +294,20 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.b.ins().icmp(IntCC::UnsignedGreaterThan, above, span)
     }
 
-    fn leave_with_fault(&mut self, block: ir::Block, fault: Fault, source: SourceId, operands: &[Value]) {
-        let tail = tail(&mut self.b, &mut self.fault, &[types::I32, types::I32, types::I64, types::I64, types::I64]);
+    fn leave_with_fault(&mut self, block: ir::Block, fault: Fault, exit: &Exit, operands: &[Value]) {
+        let params = [types::I32, types::I32, types::I64, types::I64, types::I64, types::I32];
+        let tail = match exit.instance {
+            None => tail(&mut self.b, &mut self.fault, &params[..5]),
+            Some(_) => tail(&mut self.b, &mut self.inlined_fault, &params),
+        };
         if self.b.current_block() != Some(block) {
             self.b.switch_to_block(block);
         }
+        for (place, value) in &exit.owed {
+            let value = self.value(*value);
+            self.store(place, value);
+        }
+        let source = exit.source;
         let mut args: Vec<BlockArg> = vec![
             self.b.ins().iconst(types::I32, i64::from(fault.number())).into(),
             self.b.ins().iconst(types::I32, i64::from(source.raw())).into(),
@@ -305,19 +316,37 @@ impl<'a, 'f> Translator<'a, 'f> {
             let operand = operands.get(n).copied().unwrap_or_else(|| self.b.ins().iconst(types::I64, 0));
             args.push(operand.into());
         }
+        if let Some(place) = &exit.instance {
+            args.push(self.region_offset(place).into());
+        }
         self.b.ins().jump(tail, &args);
     }
 
-    fn fault_body(&mut self, block: ir::Block) {
-        self.b.switch_to_block(block);
-        let params = self.b.block_params(block).to_vec();
-        let instance = match self.instance {
+    /// The region offset of a place, I32.
+    fn region_offset(&mut self, place: &Place) -> Value {
+        if place.base == Base::Region && place.index.is_empty() {
+            return self.b.ins().iconst(types::I32, place.offset);
+        }
+        let pointer = self.pointer(place);
+        let offset = self.b.ins().isub(pointer, self.region);
+        self.b.ins().ireduce(types::I32, offset)
+    }
+
+    /// The region offset of the own instance; 0 for a function.
+    fn own_instance(&mut self) -> Value {
+        match self.instance {
             Some(instance) => {
                 let offset = self.b.ins().isub(instance, self.region);
                 self.b.ins().ireduce(types::I32, offset)
             }
             None => self.b.ins().iconst(types::I32, 0),
-        };
+        }
+    }
+
+    fn fault_body(&mut self, block: ir::Block) {
+        self.b.switch_to_block(block);
+        let params = self.b.block_params(block).to_vec();
+        let instance = params.get(5).copied().unwrap_or_else(|| self.own_instance());
         let region = self.region;
         let mut write = |at: u32, value: Value| {
             self.b.ins().store(memory(), value, region, at as i32);
@@ -325,10 +354,31 @@ impl<'a, 'f> Translator<'a, 'f> {
         write(FAULT_CODE, params[0]);
         write(FAULT_SOURCE, params[1]);
         write(FAULT_INSTANCE, instance);
-        for (n, operand) in params[2..].iter().enumerate() {
+        for (n, operand) in params[2..5].iter().enumerate() {
             write(FAULT_OPERANDS + 8 * n as u32, *operand);
         }
         self.return_with_status(params[0]);
+    }
+
+    /// Passes on the fault of a callee. A function without an instance faults on behalf of the one that called it.
+    fn leave_body(&mut self, block: ir::Block) {
+        self.b.switch_to_block(block);
+        let params = self.b.block_params(block).to_vec();
+        if self.instance.is_some() {
+            let named = self.b.ins().load(types::I32, memory(), self.region, FAULT_INSTANCE as i32);
+            let own = self.own_instance();
+            let instance = self.b.ins().select(named, named, own);
+            self.b.ins().store(memory(), instance, self.region, FAULT_INSTANCE as i32);
+        }
+        self.return_with_status(params[0]);
+    }
+
+    /// The same where code was inlined: its instance stands for that of a callee without one.
+    fn name_instance(&mut self, place: &Place) {
+        let named = self.b.ins().load(types::I32, memory(), self.region, FAULT_INSTANCE as i32);
+        let inlined = self.region_offset(place);
+        let instance = self.b.ins().select(named, named, inlined);
+        self.b.ins().store(memory(), instance, self.region, FAULT_INSTANCE as i32);
     }
 
     fn return_with_status(&mut self, status: Value) {
@@ -350,6 +400,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         instance: Option<&Place>,
         args: &[ValueId],
         status: Option<ValueId>,
+        exit: &Exit,
     ) {
         let shape = self.env.shapes[callee];
         let mut values = vec![self.region];
@@ -378,7 +429,18 @@ impl<'a, 'f> Translator<'a, 'f> {
         match status {
             None if shape.status => {
                 let (leave, next) = (self.leave_block(), self.b.create_block());
-                self.b.ins().brif(results[0], leave, &[results[0].into()], next, &[]);
+                match &exit.instance {
+                    Some(place) if !self.env.program.funcs[callee].has_instance => {
+                        let naming = self.cold_block();
+                        self.b.ins().brif(results[0], naming, &[], next, &[]);
+                        self.b.switch_to_block(naming);
+                        self.name_instance(place);
+                        self.b.ins().jump(leave, &[results[0].into()]);
+                    }
+                    _ => {
+                        self.b.ins().brif(results[0], leave, &[results[0].into()], next, &[]);
+                    }
+                }
                 self.b.switch_to_block(next);
             }
             None => {}

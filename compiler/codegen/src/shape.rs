@@ -7,7 +7,7 @@ use crate::prim::clif_type;
 use cranelift_codegen::ir::{AbiParam, Signature, types};
 use cranelift_codegen::isa::CallConv;
 use index_vec::IndexVec;
-use plcc_mir::ir::{Base, Func, FuncId, Inst, Place, Program};
+use plcc_mir::ir::{Base, Exit, Func, FuncId, Inst, Place, Program};
 use plcc_mir::verify::bottom_up;
 use plcc_stdlib::fault::Fault;
 
@@ -37,6 +37,8 @@ pub fn shapes(program: &Program) -> IndexVec<FuncId, Shape> {
 fn shape(func: &Func, shapes: &IndexVec<FuncId, Shape>) -> Shape {
     let mut shape = Shape { instance: func.has_instance, frame: func.frame_bytes > 0, ..Shape::default() };
     let in_frame = |place: &Place| place.base == Base::Frame;
+    let exit_in_frame =
+        |exit: &Exit| exit.instance.iter().map(|p| &**p).chain(exit.owed.iter().map(|(p, _)| p)).any(in_frame);
     for inst in func.blocks.iter().flat_map(|b| &b.insts) {
         match inst {
             Inst::Load { place, .. } | Inst::Store { place, .. } | Inst::AddressOf { place, .. } => {
@@ -44,18 +46,21 @@ fn shape(func: &Func, shapes: &IndexVec<FuncId, Shape>) -> Shape {
             }
             Inst::Copy { dst, src, .. } => shape.frame |= in_frame(dst) || in_frame(src),
             Inst::Zero { dst, .. } => shape.frame |= in_frame(dst),
-            Inst::Call { callee, instance, status, .. } => {
+            Inst::Call { callee, instance, status, exit, .. } => {
+                shape.frame |= exit.instance.as_deref().is_some_and(in_frame);
                 let callee = shapes[*callee];
                 shape.frame |= callee.frame || instance.as_ref().is_some_and(in_frame);
                 shape.deadline |= callee.deadline;
                 shape.status |= if status.is_some() { callee.deadline } else { callee.status };
             }
             Inst::CallText { texts, .. } => shape.frame |= texts.iter().any(|text| in_frame(&text.place)),
-            Inst::Check { fault, .. } => {
+            Inst::Check { fault, exit, .. } => {
+                shape.frame |= exit_in_frame(exit);
                 shape.status = true;
                 shape.deadline |= *fault == Fault::Deadline;
             }
-            Inst::Poll { .. } => {
+            Inst::Poll { exit } => {
+                shape.frame |= exit_in_frame(exit);
                 shape.status = true;
                 shape.deadline = true;
             }

@@ -350,7 +350,7 @@ fn lower_bounds_far_away() {
     let i = b.load(Repr::I64, global(0), false);
     b.check_within(i, low, low + 3, Fault::IndexOutOfBounds);
     b.store(indexed(64 - low * 8, &[(i, 8, low, low + 3)]), i);
-    let address = b.address_of(indexed(64 - low * 8, &[(i, 8, low, low + 3)]));
+    let address = b.address_of(indexed(64 - low * 8, &[(i, 8, low, low + 3)]), 0);
     b.store(global(8), address);
     b.ret(None);
     let mut engines = Engines::new(&program(vec![b.finish(0)], 1));
@@ -419,7 +419,7 @@ fn references() {
     // p := REF(a[2]); p^ := p^ + 1, through an unaligned one too; an aggregate copied through references.
     for offset in [16u32, 17] {
         let mut b = task("task Main");
-        let p = b.address_of(global(offset));
+        let p = b.address_of(global(offset), 0);
         b.store(global(0), p);
         let p = b.load(Repr::I32, global(0), false);
         let place = Place::new(Base::Reference(p), 4);
@@ -429,7 +429,7 @@ fn references() {
         b.store(place.clone(), new);
         b.copy(global(200), Place::new(Base::Reference(p), 0), 80);
         b.zero(Place::new(Base::Reference(p), 8), 3);
-        let again = b.address_of(place);
+        let again = b.address_of(place, 0);
         b.store(global(4), again);
         b.ret(None);
         let mut engines = Engines::new(&program(vec![b.finish(0)], 1));

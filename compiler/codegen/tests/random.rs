@@ -136,7 +136,7 @@ impl Generator<'_> {
             _ => {
                 let offset = HEADER_BYTES + self.random.below(512) as u32;
                 let reference = if self.random.chance(50) {
-                    self.b.address_of(Place::new(Base::Region, offset))
+                    self.b.address_of(Place::new(Base::Region, offset), 0)
                 } else {
                     self.b.number(Repr::I32, u64::from(offset))
                 };

@@ -96,9 +96,9 @@ pub struct CodeArgs {
     /// Safety checks: all, none, or a list of index,division,subrange,pointer,deadline.
     #[arg(long, value_name = "all|none|LIST")]
     pub checks: Option<String>,
-    /// Optimisation of the generated code.
-    #[arg(long, value_enum, default_value_t = OptArg::Speed)]
-    pub opt: OptArg,
+    /// Optimisation of the generated code (default: speed; the interpreter, as the reference, runs the plain lowering).
+    #[arg(long, value_enum)]
+    pub opt: Option<OptArg>,
 }
 
 /// `--opt`.

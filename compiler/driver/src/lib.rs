@@ -87,7 +87,11 @@ fn run(args: &cli::RunArgs, color: Color) -> Result<u8, Failure> {
     let checked = pipeline::check(&mut parsed, &project);
     report(&parsed, Some(&checked), args.sources.message_format, color)?;
     let app = checked.app.as_ref().ok_or_else(nothing_to_run)?;
-    let compiled = pipeline::compile(&checked, app, &project, &parsed, &args.code, false)?;
+    let mut code = args.code.clone();
+    if args.engine == cli::EngineArg::Interp {
+        code.opt = code.opt.or(Some(cli::OptArg::None));
+    }
+    let compiled = pipeline::compile(&checked, app, &project, &parsed, &code, false)?;
     let mut engine: Box<dyn plcc_runtime::engine::Engine> = match args.engine {
         cli::EngineArg::Interp => Box::new(engines::Interpreter(plcc_mir::interp::Interp::new(&compiled.program))),
         cli::EngineArg::Jit => {

@@ -1,6 +1,6 @@
 //! The pipeline: one line per arrow, from sources to an engine or an executable. docs/architecture.md has the same as a table.
 
-use crate::cli::{CodeArgs, SourceArgs};
+use crate::cli::{CodeArgs, OptArg, SourceArgs};
 use crate::failure::Failure;
 use crate::project::{self, Project};
 use plcc_diag::{Diagnostics, FileId, SourceMap};
@@ -80,7 +80,7 @@ pub fn compile(
     all: bool,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
-    let (program, layout) =
+    let (mut program, layout) =
         plcc_mir::lower::lower(&checked.defs, app, 0, checks, all).map_err(|e| too_large(e, &parsed.sources))?;
     let problems = plcc_mir::verify::verify(&program);
     if !problems.is_empty() {
@@ -89,6 +89,9 @@ pub fn compile(
             problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
             plcc_mir::print::program(&program, None)
         );
+    }
+    if code.opt != Some(OptArg::None) {
+        plcc_mir::opt::optimise(&mut program);
     }
     let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
     Ok(Compiled { program, image })

@@ -5,7 +5,7 @@
 //! its business. Through [`Emit`] the rows of the operator and function tables append to the current block.
 
 use crate::ir::{
-    Args, Base, Block, BlockId, Cond, Func, FuncId, Inst, Place, SourceId, Target, Term, TextPlace, ValueId,
+    Args, Base, Block, BlockId, Cond, Exit, Func, FuncId, Inst, Place, SourceId, Target, Term, TextPlace, ValueId,
 };
 use crate::visit;
 use index_vec::IndexVec;
@@ -98,9 +98,9 @@ impl Builder {
         self.source_used
     }
 
-    fn source(&mut self) -> SourceId {
+    fn exit(&mut self) -> Exit {
         self.source_used = true;
-        self.source
+        Exit::at(self.source)
     }
 
     // ---- blocks ----
@@ -269,10 +269,10 @@ impl Builder {
         }
     }
 
-    /// The region offset of a place, I32.
-    pub fn address_of(&mut self, place: Place) -> ValueId {
+    /// The region offset of a place, I32; a reference to it reaches so many bytes (see [`Inst::AddressOf`]).
+    pub fn address_of(&mut self, place: Place, bytes: u32) -> ValueId {
         let dst = self.values.push(Repr::I32);
-        self.push(Inst::AddressOf { dst, place });
+        self.push(Inst::AddressOf { dst, place, bytes });
         dst
     }
 
@@ -287,8 +287,8 @@ impl Builder {
         result: Option<Repr>,
     ) -> Option<ValueId> {
         let dst = result.map(|repr| self.values.push(repr));
-        let source = self.source();
-        self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: None, source });
+        let exit = self.exit();
+        self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: None, exit });
         dst
     }
 
@@ -302,8 +302,8 @@ impl Builder {
     ) -> (Option<ValueId>, ValueId) {
         let dst = result.map(|repr| self.values.push(repr));
         let status = self.values.push(Repr::I32);
-        let source = self.source();
-        self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: Some(status), source });
+        let exit = self.exit();
+        self.push(Inst::Call { dst, callee, instance, args: args.to_vec(), status: Some(status), exit });
         (dst, status)
     }
 
@@ -333,8 +333,8 @@ impl Builder {
             self.expect(*operand, Repr::I64);
         }
         let Some(catch) = self.catch else {
-            let source = self.source();
-            return self.push(Inst::Check { cond, fault, operands: operands.to_vec(), source });
+            let exit = self.exit();
+            return self.push(Inst::Check { cond, fault, operands: operands.to_vec(), exit });
         };
         let ok = match cond {
             Cond::True(ok) => ok,
@@ -352,8 +352,8 @@ impl Builder {
 
     /// Looks at the watchdog.
     pub fn poll(&mut self) {
-        let source = self.source();
-        self.push(Inst::Poll { source });
+        let exit = self.exit();
+        self.push(Inst::Poll { exit });
     }
 
     // ---- the end ----

@@ -41,6 +41,8 @@ pub struct Program {
     pub region_bytes: u32,
     /// Where the frames of a task start.
     pub frame_base: u32,
+    /// What references and pointers reach (start, length), besides what an [`Inst::AddressOf`] says.
+    pub addressable: (u32, u32),
     /// What is not 0 at a cold start.
     pub initial: Vec<Segment>,
     /// Byte ranges (start, length) that a warm start keeps; sorted, disjoint.
@@ -70,7 +72,7 @@ pub struct Source {
 }
 
 /// A function: the body of a POU or the entry of a task.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Func {
     /// The POU, `Owner.Action`, or `task Name`.
     pub name: String,
@@ -160,6 +162,8 @@ pub enum Inst {
         dst: ValueId,
         /// Of what; without a bit.
         place: Place,
+        /// How far a reference to it reaches from there, bytes; 0 if no further than the addressable part.
+        bytes: u32,
     },
     /// Calls a function of the program. A fault in it leaves this function too, unless `status` catches it.
     Call {
@@ -173,8 +177,8 @@ pub enum Inst {
         args: Vec<ValueId>,
         /// I32: the fault number, 0 if none. A `Deadline` is never caught.
         status: Option<ValueId>,
-        /// Where.
-        source: SourceId,
+        /// Where, and for whom: an instance that it names stands for that of a callee without one. It owes nothing.
+        exit: Exit,
     },
     /// Calls a pure body of the standard library.
     CallRt {
@@ -205,14 +209,33 @@ pub enum Inst {
         fault: Fault,
         /// Offending values, I64; for `Within` the value and its limits are added in front.
         operands: Vec<ValueId>,
-        /// Where.
-        source: SourceId,
+        /// Where, and what is to be done before.
+        exit: Exit,
     },
     /// At the back-edge of a loop without a small known trip count: leaves with `Deadline` if the watchdog expired.
     Poll {
-        /// Where.
-        source: SourceId,
+        /// Where, and what is to be done before.
+        exit: Exit,
     },
+}
+
+/// How a check, a poll or a call leaves the function with a fault.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Exit {
+    /// Where it stands.
+    pub source: SourceId,
+    /// The instance that the fault names, if it is not the function's own: that of code that was inlined.
+    pub instance: Option<Box<Place>>,
+    /// Stores that are due before, in order. Lowering makes none; the optimiser holds variables in values and owes their
+    /// memory, which a fault must find as if each store had been done in its place (semantics.md \[E1\]).
+    pub owed: Vec<(Place, ValueId)>,
+}
+
+impl Exit {
+    /// An exit of code that was not inlined and owes nothing.
+    pub fn at(source: SourceId) -> Self {
+        Self { source, instance: None, owed: Vec::new() }
+    }
 }
 
 /// What a check demands.
@@ -232,7 +255,7 @@ pub enum Cond {
 }
 
 /// One to three operands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Args {
     /// Of a unary operation.
     One([ValueId; 1]),
@@ -314,7 +337,7 @@ pub enum Base {
 
 /// A place in memory: base + offset + sum of index * stride. Two places with the same base overlap only if these sums can
 /// meet, so that aliasing is answered by arithmetic on the bounds and not by pointers.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Place {
     /// Where it starts.
     pub base: Base,
@@ -336,7 +359,7 @@ pub struct TextPlace {
 }
 
 /// A variable part of a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IndexTerm {
     /// The index, I64.
     pub value: ValueId,

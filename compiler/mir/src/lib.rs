@@ -7,6 +7,7 @@ pub mod ir;
 pub mod layout;
 pub mod lower;
 mod operands;
+pub mod opt;
 pub mod print;
 pub mod verify;
 pub mod visit;

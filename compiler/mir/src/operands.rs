@@ -1,6 +1,6 @@
 //! What instructions read and define, where they lead and whom they call: the questions every analysis asks.
 
-use crate::ir::{Base, Cond, Func, FuncId, Inst, Place, Target, Term, ValueId};
+use crate::ir::{Base, Cond, Exit, Func, FuncId, Inst, Place, Target, Term, ValueId};
 
 impl Func {
     /// The functions that it calls, once per call.
@@ -32,7 +32,8 @@ impl Inst {
     /// Calls `visit` for every value that it reads.
     pub fn for_each_use(&self, mut visit: impl FnMut(ValueId)) {
         match self {
-            Inst::Const { .. } | Inst::Poll { .. } => {}
+            Inst::Const { .. } => {}
+            Inst::Poll { exit } => exit.for_each_use(visit),
             Inst::Prim { args, .. } => args.iter().for_each(|v| visit(*v)),
             Inst::Load { place, .. } | Inst::AddressOf { place, .. } | Inst::Zero { dst: place, .. } => {
                 place.for_each_use(visit);
@@ -45,11 +46,12 @@ impl Inst {
                 dst.for_each_use(&mut visit);
                 src.for_each_use(visit);
             }
-            Inst::Call { instance, args, .. } => {
+            Inst::Call { instance, args, exit, .. } => {
                 if let Some(place) = instance {
                     place.for_each_use(&mut visit);
                 }
                 args.iter().for_each(|v| visit(*v));
+                exit.for_each_use(visit);
             }
             Inst::CallRt { args, .. } => args.iter().for_each(|v| visit(*v)),
             Inst::CallText { texts, args, .. } => {
@@ -59,12 +61,26 @@ impl Inst {
                 }
                 args.iter().for_each(|v| visit(*v));
             }
-            Inst::Check { cond, operands, .. } => {
+            Inst::Check { cond, operands, exit, .. } => {
                 match cond {
                     Cond::True(value) | Cond::Within { value, .. } => visit(*value),
                 }
                 operands.iter().for_each(|v| visit(*v));
+                exit.for_each_use(visit);
             }
+        }
+    }
+}
+
+impl Exit {
+    /// Calls `visit` for every value that it reads.
+    pub fn for_each_use(&self, mut visit: impl FnMut(ValueId)) {
+        if let Some(place) = &self.instance {
+            place.for_each_use(&mut visit);
+        }
+        for (place, value) in &self.owed {
+            place.for_each_use(&mut visit);
+            visit(*value);
         }
     }
 }

@@ -3,7 +3,9 @@
 //! In: a program or a function. Out: text that follows the source: memory by its name in the program, checks in words,
 //! one block after the other. The same program gives the same text.
 
-use crate::ir::{Base, BlockId, Cond, Func, FuncId, Inst, Place, Program, Source, SourceId, Target, Term, ValueId};
+use crate::ir::{
+    Base, BlockId, Cond, Exit, Func, FuncId, Inst, Place, Program, Source, SourceId, Target, Term, ValueId,
+};
 use std::fmt::Write;
 
 /// Says where a row of the source table lies, e. g. `main.st:4:7`; `None` leaves it out.
@@ -79,7 +81,7 @@ impl Printer<'_> {
         for inst in &block.insts {
             let text = self.inst(inst);
             let at = match inst {
-                Inst::Call { source, .. } | Inst::Check { source, .. } | Inst::Poll { source } => self.at(*source),
+                Inst::Call { exit, .. } | Inst::Check { exit, .. } | Inst::Poll { exit } => self.at(exit.source),
                 _ => None,
             };
             let _ = match at {
@@ -127,8 +129,8 @@ impl Printer<'_> {
                 format!("copy {bytes} bytes {} := {}", self.place(dst), self.place(src))
             }
             Inst::Zero { dst, bytes } => format!("zero {bytes} bytes {}", self.place(dst)),
-            Inst::AddressOf { dst, place } => format!("{} = address of {}", value(*dst), self.place(place)),
-            Inst::Call { dst, callee: f, instance, args, status, .. } => {
+            Inst::AddressOf { dst, place, .. } => format!("{} = address of {}", value(*dst), self.place(place)),
+            Inst::Call { dst, callee: f, instance, args, status, exit } => {
                 let mut text = match dst {
                     Some(dst) => format!("{} = ", value(*dst)),
                     None => String::new(),
@@ -140,7 +142,7 @@ impl Printer<'_> {
                 if let Some(status) = status {
                     let _ = write!(text, " catching {}", value(*status));
                 }
-                text
+                text + &self.exit(exit)
             }
             Inst::CallRt { dst, func, args } => format!("{} = call {}({})", value(*dst), func.symbol, values(args)),
             Inst::CallText { dst, func, texts, args } => {
@@ -149,22 +151,34 @@ impl Printer<'_> {
                 list.extend(args.iter().map(|v| value(*v)));
                 format!("{} = call {}({})", value(*dst), func.symbol, list.join(", "))
             }
-            Inst::Check { cond, fault, operands, source } => {
+            Inst::Check { cond, fault, operands, exit } => {
                 let cond = match cond {
                     Cond::True(v) => value(*v),
                     Cond::Within { value: v, low, high } => format!("{low} <= {} <= {high}", value(*v)),
                 };
                 let mut text = format!("check {cond} else {}", fault.title());
-                if let Some(what) = self.program.sources.get(*source).map(|s| &s.what).filter(|w| !w.is_empty()) {
+                if let Some(what) = self.program.sources.get(exit.source).map(|s| &s.what).filter(|w| !w.is_empty()) {
                     let _ = write!(text, " of `{what}`");
                 }
                 if !operands.is_empty() {
                     let _ = write!(text, " ({})", values(operands));
                 }
-                text
+                text + &self.exit(exit)
             }
-            Inst::Poll { .. } => "poll deadline".into(),
+            Inst::Poll { exit } => format!("poll deadline{}", self.exit(exit)),
         }
+    }
+
+    /// What an exit says besides its position.
+    fn exit(&self, exit: &Exit) -> String {
+        let mut text = String::new();
+        if let Some(place) = &exit.instance {
+            let _ = write!(text, " in {}", self.place(place));
+        }
+        for (place, v) in &exit.owed {
+            let _ = write!(text, ", owes {} := {}", self.place(place), value(*v));
+        }
+        text
     }
 
     fn term(&self, term: &Term) -> String {

@@ -5,7 +5,9 @@
 //! frames that fit. The meaning of the code is not its business.
 
 use crate::dominators::Dominators;
-use crate::ir::{Base, Block, BlockId, Cond, Func, FuncId, Inst, Place, Program, SourceId, Target, Term, ValueId};
+use crate::ir::{
+    Base, Block, BlockId, Cond, Exit, Func, FuncId, Inst, Place, Program, SourceId, Target, Term, ValueId,
+};
 use index_vec::IndexVec;
 use plcc_stdlib::prim::Repr;
 use rustc_hash::FxHashSet;
@@ -172,6 +174,16 @@ impl Checker<'_> {
         self.demand(source.index() < rows, || format!("no row {} in the source table", source.index()));
     }
 
+    fn exit(&mut self, exit: &Exit) {
+        self.source(exit.source);
+        if let Some(place) = &exit.instance {
+            self.whole(place, 0);
+        }
+        for (place, value) in &exit.owed {
+            self.scalar(*value, place);
+        }
+    }
+
     fn inst(&mut self, inst: &Inst) {
         match inst {
             Inst::Const { dst, raw } => {
@@ -200,12 +212,13 @@ impl Checker<'_> {
                 self.whole(src, *bytes);
             }
             Inst::Zero { dst, bytes } => self.whole(dst, *bytes),
-            Inst::AddressOf { dst, place } => {
+            Inst::AddressOf { dst, place, bytes } => {
                 self.is(*dst, Repr::I32, "address");
-                self.whole(place, 0);
+                self.whole(place, *bytes);
             }
-            Inst::Call { dst, callee, instance, args, status, source } => {
-                self.source(*source);
+            Inst::Call { dst, callee, instance, args, status, exit } => {
+                self.exit(exit);
+                self.demand(exit.owed.is_empty(), || "a call owes a store".into());
                 self.call(*dst, *callee, instance.as_ref(), args);
                 if let Some(status) = status {
                     self.is(*status, Repr::I32, "status");
@@ -233,8 +246,8 @@ impl Checker<'_> {
                 }
                 self.is(*dst, Repr::I64, func.symbol);
             }
-            Inst::Check { cond, operands, source, .. } => {
-                self.source(*source);
+            Inst::Check { cond, operands, exit, .. } => {
+                self.exit(exit);
                 let own = match cond {
                     Cond::True(value) => {
                         self.is(*value, Repr::I8, "condition");
@@ -251,7 +264,7 @@ impl Checker<'_> {
                     self.is(*operand, Repr::I64, "operand of a fault");
                 }
             }
-            Inst::Poll { source } => self.source(*source),
+            Inst::Poll { exit } => self.exit(exit),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Walks over the operands of instructions: what reads, writes and renames values without knowing each instruction.
 
-use crate::ir::{Base, Cond, Inst, Place, Target, Term, ValueId};
+use crate::ir::{Base, Cond, Exit, Inst, Place, Target, Term, ValueId};
 
 /// Calls `f` with every value that a place needs.
 pub fn place_uses(place: &mut Place, f: &mut impl FnMut(&mut ValueId)) {
@@ -12,8 +12,20 @@ pub fn place_uses(place: &mut Place, f: &mut impl FnMut(&mut ValueId)) {
     }
 }
 
-/// Calls `f` with every place of an instruction; a call's instance is one.
+/// The exit of an instruction that has one.
+pub fn exit(inst: &mut Inst) -> Option<&mut Exit> {
+    match inst {
+        Inst::Check { exit, .. } | Inst::Poll { exit } | Inst::Call { exit, .. } => Some(exit),
+        _ => None,
+    }
+}
+
+/// Calls `f` with every place of an instruction, those of its exit too; a call's instance is one.
 pub fn places(inst: &mut Inst, f: &mut impl FnMut(&mut Place)) {
+    if let Some(exit) = exit(inst) {
+        exit.instance.iter_mut().for_each(|place| f(place));
+        exit.owed.iter_mut().for_each(|(place, _)| f(place));
+    }
     match inst {
         Inst::Load { place, .. } | Inst::Store { place, .. } | Inst::AddressOf { place, .. } => f(place),
         Inst::Copy { dst, src, .. } => {
@@ -30,6 +42,9 @@ pub fn places(inst: &mut Inst, f: &mut impl FnMut(&mut Place)) {
 /// Calls `f` with every value that an instruction reads, those of its places too.
 pub fn uses(inst: &mut Inst, f: &mut impl FnMut(&mut ValueId)) {
     places(inst, &mut |place| place_uses(place, f));
+    if let Some(exit) = exit(inst) {
+        exit.owed.iter_mut().for_each(|(_, value)| f(value));
+    }
     match inst {
         Inst::Prim { args, .. } => args.iter_mut().for_each(f),
         Inst::Store { value, .. } => f(value),

@@ -4,10 +4,10 @@
 //! reinterpreted value is its operand's register. Jumps with arguments become moves that act as if all were done at once.
 
 use super::op::{
-    BlockSite, CallSite, CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, Op, PrimSite, REGION, Reg, RtSite,
-    SCRATCH, SwitchSite, TextSite,
+    AddressSite, BlockSite, CallSite, CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, Op, PrimSite, REGION,
+    Reg, RtSite, SCRATCH, SwitchSite, TextSite,
 };
-use crate::ir::{Base, BlockId, Cond, Func, FuncId, Inst, Place, Program, Target, Term, ValueId};
+use crate::ir::{Base, BlockId, Cond, Exit, Func, FuncId, Inst, Place, Program, Target, Term, ValueId};
 use crate::verify::bottom_up;
 use index_vec::IndexVec;
 use plcc_stdlib::fault::Fault;
@@ -192,12 +192,7 @@ impl<'a> Decoder<'a> {
 
     /// Base register and offset of a place; `scratch` holds the base if it must be computed.
     fn place(&mut self, place: &Place, scratch: Reg) -> (Reg, i32) {
-        let mut base = match place.base {
-            Base::Region => REGION,
-            Base::Instance => INSTANCE,
-            Base::Frame => FRAME,
-            Base::Reference(value) => self.reg(value),
-        };
+        let mut base = self.base(place);
         for term in &place.index {
             let value = self.reg(term.value);
             self.push(Op::Index(scratch, base, value, term.stride));
@@ -254,12 +249,12 @@ impl<'a> Decoder<'a> {
                 self.out.blocks.push(BlockSite { dst, src: (REGION, 0), bytes: *bytes });
                 self.push(Op::Zero(self.out.blocks.len() as u32 - 1));
             }
-            Inst::AddressOf { dst, place } => {
+            Inst::AddressOf { dst, place, .. } => {
                 let (base, offset) = self.place(place, SCRATCH[0]);
                 let dst = self.reg(*dst);
                 self.push(Op::Address(dst, base, offset));
             }
-            Inst::Call { dst, callee, instance, args, status, .. } => {
+            Inst::Call { dst, callee, instance, args, status, exit } => {
                 let instance = instance.as_ref().map(|place| self.place(place, SCRATCH[0]));
                 let params = &self.program.funcs[*callee].blocks[BlockId::from_usize(0)].params;
                 let site = CallSite {
@@ -268,6 +263,7 @@ impl<'a> Decoder<'a> {
                     args: args.iter().zip(params).map(|(a, p)| (self.reg(*a), self.files[*callee].of[*p])).collect(),
                     dst: dst.map(|v| self.reg(v)),
                     status: status.map(|v| self.reg(v)),
+                    fault_instance: exit.instance.as_ref().map(|place| self.address_site(place)),
                 };
                 self.out.calls.push(site);
                 self.push(Op::Call(self.out.calls.len() as u32 - 1));
@@ -287,31 +283,49 @@ impl<'a> Decoder<'a> {
                 self.out.text_calls.push(site);
                 self.push(Op::CallText(self.out.text_calls.len() as u32 - 1));
             }
-            Inst::Check { cond, fault, operands, source } => {
+            Inst::Check { cond, fault, operands, exit } => {
                 let (low, high) = match cond {
                     Cond::True(_) => (0, 0),
                     Cond::Within { low, high, .. } => (*low, *high),
                 };
                 let operands = self.regs(operands);
-                let site = self.check(CheckSite { fault: *fault, source: source.raw(), low, high, operands });
+                let site = self.check(*fault, exit, low, high, operands);
                 let op = match cond {
                     Cond::True(value) => Op::CheckTrue(self.reg(*value), site),
                     Cond::Within { value, .. } => Op::CheckWithin(self.reg(*value), site),
                 };
                 self.push(op);
             }
-            Inst::Poll { source } => {
-                let site =
-                    CheckSite { fault: Fault::Deadline, source: source.raw(), low: 0, high: 0, operands: Vec::new() };
-                let site = self.check(site);
+            Inst::Poll { exit } => {
+                let site = self.check(Fault::Deadline, exit, 0, 0, Vec::new());
                 self.push(Op::Poll(site));
             }
         }
     }
 
-    fn check(&mut self, site: CheckSite) -> u32 {
-        self.out.checks.push(site);
+    fn check(&mut self, fault: Fault, exit: &Exit, low: i64, high: i64, operands: Vec<Reg>) -> u32 {
+        let instance = exit.instance.as_ref().map(|place| self.address_site(place));
+        let owed = exit.owed.iter();
+        let owed = owed.map(|(place, value)| {
+            (self.address_site(place), self.reg(*value), self.func.values[*value].bytes(), place.bit)
+        });
+        let owed = owed.collect();
+        self.out.checks.push(CheckSite { fault, source: exit.source.raw(), low, high, operands, instance, owed });
         self.out.checks.len() as u32 - 1
+    }
+
+    fn address_site(&self, place: &Place) -> AddressSite {
+        let terms = place.index.iter().map(|term| (self.reg(term.value), term.stride)).collect();
+        AddressSite { base: self.base(place), offset: place.offset, terms }
+    }
+
+    fn base(&self, place: &Place) -> Reg {
+        match place.base {
+            Base::Region => REGION,
+            Base::Instance => INSTANCE,
+            Base::Frame => FRAME,
+            Base::Reference(value) => self.reg(value),
+        }
     }
 
     fn prim(&mut self, dst: ValueId, op: PrimOp, repr: Repr, args: &[ValueId]) {

@@ -1,6 +1,8 @@
 //! Runs decoded functions.
 
-use super::op::{CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, MAX_TEXTS, Op, REGION, Reg, specialised};
+use super::op::{
+    AddressSite, CheckSite, Code, FIRST_FREE, FRAME, FuncCode, INSTANCE, MAX_TEXTS, Op, REGION, Reg, specialised,
+};
 use crate::ir::FuncId;
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr, eval};
@@ -49,7 +51,9 @@ pub fn run(
     macro_rules! fault {
         ($site:expr, $operands:expr) => {{
             let site: &CheckSite = &func.checks[$site as usize];
-            let instance = if func.has_instance { get!(INSTANCE) as u32 } else { 0 };
+            let own = || if func.has_instance { get!(INSTANCE) as u32 } else { 0 };
+            let mut instance = site.instance.as_ref().map_or_else(own, |place| place_address(place, regs) as u32);
+            pay(site, regs, mem);
             record(mem, site, instance, $operands);
             // Leaves one caller after the other until one catches the fault.
             loop {
@@ -69,6 +73,12 @@ pub fn run(
                     mem[FAULT_CODE as usize..][..4].fill(0);
                     pc = caller.next as usize;
                     break;
+                }
+                // A function without an instance faults on behalf of the one that called it.
+                if instance == 0 {
+                    let own = || if func.has_instance { get!(INSTANCE) as u32 } else { 0 };
+                    instance = call.fault_instance.as_ref().map_or_else(own, |place| place_address(place, regs) as u32);
+                    mem[FAULT_INSTANCE as usize..][..4].copy_from_slice(&instance.to_le_bytes());
                 }
             }
         }};
@@ -266,6 +276,26 @@ fn bytes<const N: usize>(mem: &mut [u8], base: u64, offset: i32) -> &mut [u8; N]
     match mem.get_mut(at as usize..).and_then(|tail| tail.first_chunk_mut()) {
         Some(chunk) => chunk,
         None => outside(at, N as u64, size),
+    }
+}
+
+fn place_address(place: &AddressSite, regs: &[u64]) -> u64 {
+    let start = regs[place.base as usize].wrapping_add_signed(place.offset);
+    let step =
+        |at: u64, (value, stride): &(Reg, u32)| at.wrapping_add(regs[*value as usize].wrapping_mul(u64::from(*stride)));
+    place.terms.iter().fold(start, step)
+}
+
+/// Does the stores that a fault owes.
+#[cold]
+fn pay(site: &CheckSite, regs: &[u64], mem: &mut [u8]) {
+    for (place, value, count, bit) in &site.owed {
+        let (at, value) = (place_address(place, regs), regs[*value as usize]);
+        let target = range(mem, at, u64::from(*count));
+        match bit {
+            Some(bit) => mem[target.start] = mem[target.start] & !(1 << bit) | (value as u8 & 1) << bit,
+            None => mem[target].copy_from_slice(&value.to_le_bytes()[..*count as usize]),
+        }
     }
 }
 

@@ -189,6 +189,8 @@ pub struct CallSite {
     pub args: Vec<(Reg, Reg)>,
     pub dst: Option<Reg>,
     pub status: Option<Reg>,
+    /// The instance that a fault of a callee without one names, if it is not that of the function.
+    pub fault_instance: Option<AddressSite>,
 }
 
 /// A call of the standard library.
@@ -219,6 +221,18 @@ pub struct CheckSite {
     pub high: i64,
     /// Operands of the fault, from registers.
     pub operands: Vec<Reg>,
+    /// The instance that the fault names, if it is not the function's own.
+    pub instance: Option<AddressSite>,
+    /// Stores that are due before: where, from which register, how many bytes, which bit.
+    pub owed: Vec<(AddressSite, Reg, u32, Option<u8>)>,
+}
+
+/// A place as only a fault needs it: base, constant part, registers with their strides.
+#[derive(Debug, Clone)]
+pub struct AddressSite {
+    pub base: Reg,
+    pub offset: i64,
+    pub terms: Vec<(Reg, u32)>,
 }
 
 /// A choice: labels sorted, then their targets.

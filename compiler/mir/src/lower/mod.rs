@@ -31,6 +31,7 @@ use plcc_hir::app::Application;
 use plcc_hir::{Defs, PouId};
 use reach::Reach;
 use rustc_hash::FxHashMap;
+pub(crate) use task::frame_bytes;
 
 /// Which faults are looked for (`--checks`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,6 +105,7 @@ pub fn lower(
     program.initial = image.segments();
     program.region_bytes = layout.region_bytes;
     program.frame_base = layout.frame.start;
+    program.addressable = (layout.addressable.start, layout.addressable.bytes);
     program.retain = layout.retain.clone();
     Ok((program, layout))
 }

@@ -458,7 +458,12 @@ impl FuncLower<'_, '_> {
         {
             return value;
         }
-        self.b.address_of(access.place)
+        // A reference that is kept goes through its checks; what is handed to a VAR_IN_OUT reaches all of the variable.
+        let bytes = match purpose {
+            Purpose::Address => 0,
+            Purpose::Access => self.cx.layout.size(self.defs, access.ty),
+        };
+        self.b.address_of(access.place, bytes)
     }
 
     /// An access to a variable of a callee: in the addressable part a BOOL may be any byte.

@@ -87,7 +87,7 @@ fn area(place: &HirPlace) -> Area {
 }
 
 /// Bytes of the longest chain of frames that a task can need.
-pub(super) fn frame_bytes(program: &Program) -> u64 {
+pub(crate) fn frame_bytes(program: &Program) -> u64 {
     let order = match bottom_up(program) {
         Ok(order) => order,
         Err(id) => bug!("`{}` calls itself", program.funcs[id].name),

@@ -438,7 +438,10 @@ impl FuncLower<'_, '_> {
     fn offset_of(&mut self, text: &Text) -> ValueId {
         match (text.place.base, text.place.offset, text.place.index.is_empty()) {
             (Base::Reference(value), 0, true) => value,
-            _ => self.b.address_of(text.place.clone()),
+            _ => {
+                let units = text.known().map_or(0, |capacity| capacity.saturating_add(1));
+                self.b.address_of(text.place.clone(), units.saturating_mul(text.unit_bytes()))
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::build::Builder;
-use crate::ir::{Args, IndexTerm, Segment};
+use crate::ir::{Args, Exit, IndexTerm, Segment};
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::PrimOp;
 
@@ -106,15 +106,15 @@ fn each_mistake_is_found() {
             "only a truth value is normalised",
             with_value(Repr::I32, Inst::Load { dst: v(4), place: place(), normalise: true }),
         ),
-        ("address: v4 is i64", with_value(Repr::I64, Inst::AddressOf { dst: v(4), place: place() })),
-        ("no row 7 in the source table", push(Inst::Poll { source: SourceId::from_raw(7) })),
+        ("address: v4 is i64", with_value(Repr::I64, Inst::AddressOf { dst: v(4), place: place(), bytes: 0 })),
+        ("no row 7 in the source table", push(Inst::Poll { exit: Exit::at(SourceId::from_raw(7)) })),
         (
             "checked value: v0 is i32",
             push(Inst::Check {
                 cond: Cond::Within { value: v(0), low: 0, high: 1 },
                 fault: Fault::SubrangeViolation,
                 operands: vec![],
-                source,
+                exit: Exit::at(source),
             }),
         ),
         (
@@ -123,7 +123,7 @@ fn each_mistake_is_found() {
                 cond: Cond::True(v(2)),
                 fault: Fault::SubrangeViolation,
                 operands: vec![v(0); 4],
-                source,
+                exit: Exit::at(source),
             }),
         ),
         (
@@ -134,7 +134,7 @@ fn each_mistake_is_found() {
                 instance: None,
                 args: vec![v(0)],
                 status: None,
-                source,
+                exit: Exit::at(source),
             }),
         ),
         (
@@ -145,12 +145,19 @@ fn each_mistake_is_found() {
                 instance: Some(place()),
                 args: vec![],
                 status: None,
-                source,
+                exit: Exit::at(source),
             }),
         ),
         (
             "calls itself",
-            push(Inst::Call { dst: None, callee: main, instance: None, args: vec![], status: None, source }),
+            push(Inst::Call {
+                dst: None,
+                callee: main,
+                instance: None,
+                args: vec![],
+                status: None,
+                exit: Exit::at(source),
+            }),
         ),
         (
             "calls f5, which does not exist",
@@ -160,7 +167,7 @@ fn each_mistake_is_found() {
                 instance: None,
                 args: vec![],
                 status: None,
-                source,
+                exit: Exit::at(source),
             }),
         ),
         ("returns a result but has none", Box::new(move |p| p.funcs[main].blocks[2].term = Term::Return(Some(v(0))))),

@@ -1,0 +1,149 @@
+//! Tools of the passes: replacing values, where values come from, compaction.
+
+use crate::dominators::Dominators;
+use crate::ir::{BlockId, Func, Inst, Target, ValueId};
+use crate::visit;
+use index_vec::IndexVec;
+
+/// Values that stand for others; chains are followed.
+#[derive(Debug, Clone)]
+pub struct Replace {
+    by: IndexVec<ValueId, ValueId>,
+}
+
+impl Replace {
+    /// Nothing is replaced yet.
+    pub fn new(func: &Func) -> Self {
+        Self { by: func.values.indices().collect() }
+    }
+
+    /// From now on `old` is `new`.
+    pub fn set(&mut self, old: ValueId, new: ValueId) {
+        self.grow(old);
+        let new = self.get(new);
+        debug_assert_ne!(old, new, "a value replaced by itself");
+        self.by[old] = new;
+    }
+
+    /// What a value is.
+    pub fn get(&self, value: ValueId) -> ValueId {
+        let mut at = value;
+        while let Some(next) = self.by.get(at) {
+            if *next == at {
+                break;
+            }
+            at = *next;
+        }
+        at
+    }
+
+    /// Knows values that were made after it.
+    fn grow(&mut self, value: ValueId) {
+        while self.by.len() <= value.index() {
+            let own = ValueId::from_usize(self.by.len());
+            self.by.push(own);
+        }
+    }
+
+    /// Replaces the operands of an instruction.
+    pub fn inst(&self, inst: &mut Inst) {
+        visit::uses(inst, &mut |v| *v = self.get(*v));
+    }
+
+    /// Replaces everywhere.
+    pub fn apply(&self, func: &mut Func) {
+        for block in &mut func.blocks {
+            block.insts.iter_mut().for_each(|inst| self.inst(inst));
+            visit::term_uses(&mut block.term, &mut |v| *v = self.get(*v));
+        }
+    }
+}
+
+/// How often each value is read.
+pub fn use_counts(func: &Func) -> IndexVec<ValueId, u32> {
+    let mut counts: IndexVec<ValueId, u32> = IndexVec::from_vec(vec![0; func.values.len()]);
+    for block in &func.blocks {
+        block.insts.iter().for_each(|inst| inst.for_each_use(|v| counts[v] += 1));
+        block.term.for_each_use(|v| counts[v] += 1);
+    }
+    counts
+}
+
+/// Whether an instruction may be left out when nobody reads its results: it writes no memory and cannot fault.
+pub fn is_pure(inst: &Inst) -> bool {
+    matches!(
+        inst,
+        Inst::Const { .. } | Inst::Prim { .. } | Inst::Load { .. } | Inst::AddressOf { .. } | Inst::CallRt { .. }
+    )
+}
+
+/// The instruction that defines each value; `None` for parameters of blocks.
+pub struct Definitions<'a>(IndexVec<ValueId, Option<&'a Inst>>);
+
+impl<'a> Definitions<'a> {
+    /// Of all values.
+    pub fn new(func: &'a Func) -> Self {
+        let mut defs = IndexVec::from_vec(vec![None; func.values.len()]);
+        for inst in func.blocks.iter().flat_map(|b| &b.insts) {
+            let (first, second) = inst.results();
+            for value in first.into_iter().chain(second) {
+                defs[value] = Some(inst);
+            }
+        }
+        Self(defs)
+    }
+
+    /// Of one value.
+    pub fn get(&self, value: ValueId) -> Option<&'a Inst> {
+        self.0.get(value).copied().flatten()
+    }
+
+    /// The register value of a constant.
+    pub fn constant(&self, value: ValueId) -> Option<u64> {
+        match self.get(value) {
+            Some(Inst::Const { raw, .. }) => Some(*raw),
+            _ => None,
+        }
+    }
+}
+
+/// Leaves out blocks that the entry does not reach, puts the others into reverse post-order and numbers blocks and values
+/// without gaps.
+pub fn compact(func: &mut Func) {
+    let order = Dominators::new(func).order;
+    let mut number: IndexVec<BlockId, Option<BlockId>> = IndexVec::from_vec(vec![None; func.blocks.len()]);
+    for (n, block) in order.iter().enumerate() {
+        number[*block] = Some(BlockId::from_usize(n));
+    }
+    let mut old: Vec<Option<crate::ir::Block>> = std::mem::take(&mut func.blocks).into_iter().map(Some).collect();
+    func.blocks = order.iter().filter_map(|block| old[block.index()].take()).collect();
+    let mut values = IndexVec::new();
+    let mut new: IndexVec<ValueId, Option<ValueId>> = IndexVec::from_vec(vec![None; func.values.len()]);
+    for block in &mut func.blocks {
+        let mut define = |v: &mut ValueId| {
+            let fresh = values.push(func.values[*v]);
+            new[*v] = Some(fresh);
+            *v = fresh;
+        };
+        block.params.iter_mut().for_each(&mut define);
+        block.insts.iter_mut().for_each(|inst| visit::defs(inst, &mut define));
+    }
+    let name = &func.name;
+    let renumber = |v: &mut ValueId| match new[*v] {
+        Some(fresh) => *v = fresh,
+        None => plcc_diag::bug!("`{name}`: v{} is read but not defined", v.index()),
+    };
+    for block in &mut func.blocks {
+        block.insts.iter_mut().for_each(|inst| visit::uses(inst, &mut |v| renumber(v)));
+        visit::term_uses(&mut block.term, &mut |v| renumber(v));
+        visit::targets(&mut block.term, &mut |target| {
+            target.block = number[target.block].unwrap_or_else(|| plcc_diag::bug!("a reachable block was dropped"));
+        });
+    }
+    func.values = values;
+}
+
+/// A jump without arguments.
+pub fn to(block: BlockId) -> Target {
+    Target { block, args: Vec::new() }
+}
