@@ -74,9 +74,7 @@ impl Clock {
     /// Waits for the release of a cycle (from 1). `stop` is asked after each wake-up; `None` then, and at the end of time.
     pub fn wait(&mut self, cycle: u64, mut stop: impl FnMut() -> bool) -> Option<Tick> {
         match self {
-            Clock::Virtual { interval_ns } => {
-                Some(Tick::at(i64::try_from(cycle - 1).ok()?.checked_mul(*interval_ns)?))
-            }
+            Clock::Virtual { interval_ns } => Some(Tick::at(i64::try_from(cycle - 1).ok()?.checked_mul(*interval_ns)?)),
             Clock::Real { grid, start_ns } => {
                 let mut now = monotonic_ns();
                 let start = *start_ns.get_or_insert(now);

@@ -137,7 +137,8 @@ impl<'a> Edges<'a> {
                 rest -= n;
             }
             let inside = |at: &u32| (*offset..offset + bytes).contains(at);
-            for value in self.image.safe_state.iter().filter(|v| inside(&v.offset) && (bit.is_none() || v.bit == *bit)) {
+            for value in self.image.safe_state.iter().filter(|v| inside(&v.offset) && (bit.is_none() || v.bit == *bit))
+            {
                 path::write(place.as_mut_slice(), value.offset - start, value.bit, &value.bytes);
             }
         }

@@ -33,7 +33,6 @@ impl Region {
     pub fn as_mut_ptr(&mut self) -> *mut u8 {
         self.lines.as_mut_ptr().cast()
     }
-
 }
 
 /// Exclusive use of a part of a region: the memory of one resource, or what resources share.

@@ -14,26 +14,15 @@ pub fn describe(image: &Image, part: &Part, number: u32, task: usize, cycle: u64
     let operands = [0, 1, 2].map(|n| part.read_i64(region::FAULT_OPERANDS + 8 * n));
     let mut out = format!("error[{}]: {}\n", fault.code(), fault.title());
     if let Some(source) = source {
-        let file = |of: u32| image.files.get(of as usize).map_or("?", String::as_str);
-        out.push_str(&format!("  --> {}:{}:{}\n", file(source.file), source.line, source.column));
-        // The instance is that of the POU itself or, of a function, that of its caller.
-        let call = part.read_u32(region::FAULT_CALL).checked_sub(1).and_then(|n| image.sources.get(n as usize));
-        let owner = call.unwrap_or(source);
+        let file = image.files.get(source.file as usize).map_or("?", String::as_str);
+        out.push_str(&format!("  --> {file}:{}:{}\n", source.line, source.column));
         let instance = match part.read_u32(region::FAULT_INSTANCE) {
             0 => None,
-            offset => instance_path(image, &owner.pou, offset + part.start() as u32),
+            offset => instance_path(image, &source.pou, offset + part.start() as u32),
         };
-        let instance = instance.map(|path| format!(" (instance {path})")).unwrap_or_default();
-        match call {
-            Some(call) => out.push_str(&format!(
-                "  in {}\n  called from {}{instance} at {}:{}:{}\n",
-                source.pou,
-                call.pou,
-                file(call.file),
-                call.line,
-                call.column
-            )),
-            None => out.push_str(&format!("  in {}{instance}\n", source.pou)),
+        match instance {
+            Some(path) => out.push_str(&format!("  in {} (instance {path})\n", source.pou)),
+            None => out.push_str(&format!("  in {}\n", source.pou)),
         }
         out.push_str(&format!("  {}\n", fault.details(&source.what, operands)));
     }
@@ -46,12 +35,10 @@ pub fn describe(image: &Image, part: &Part, number: u32, task: usize, cycle: u64
     out
 }
 
-/// The statement in which the recorded fault happened, and the instance's offset in the part. Of a function, whose own
-/// variables are gone, the statement that called it.
+/// The statement in which the recorded fault happened, and the instance's offset in the part.
 pub fn statement<'i>(image: &'i Image, part: &Part) -> (Option<&'i Statement>, u32) {
-    let row = |n: u32| image.sources.get(n as usize);
-    let source = part.read_u32(region::FAULT_CALL).checked_sub(1).map_or(part.read_u32(region::FAULT_SOURCE), |n| n);
-    let statement = row(source).and_then(|s| s.statement).and_then(|n| image.statements.get(n as usize));
+    let source = image.sources.get(part.read_u32(region::FAULT_SOURCE) as usize);
+    let statement = source.and_then(|s| s.statement).and_then(|n| image.statements.get(n as usize));
     (statement, part.read_u32(region::FAULT_INSTANCE))
 }
 

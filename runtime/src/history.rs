@@ -78,7 +78,8 @@ mod tests {
     #[test]
     fn the_last_cycles_and_the_moment_of_the_fault() {
         let image = Image { types: vec![TypeDesc::Elem(Elem::Int.code())], ..Image::default() };
-        let var = |name: &str, in_instance, offset| StatementVar { name: name.into(), in_instance, offset, bit: None, ty: 0 };
+        let var =
+            |name: &str, in_instance, offset| StatementVar { name: name.into(), in_instance, offset, bit: None, ty: 0 };
         let statement = Statement { vars: vec![var("a", true, 2), var("limit", false, 0)] };
         let mut history = History::new(2, 8);
         for cycle in 1..=3u8 {

@@ -86,7 +86,9 @@ impl<'i> Resolver<'i> {
                 let (resource, rest) = self.strip(path.trim());
                 let prefix = format!("{}.", rest.to_ascii_uppercase());
                 let own = self.image.roots.iter().filter(|r| {
-                    r.name.to_ascii_uppercase().starts_with(&prefix) && self.belongs(r, resource) && !r.name.contains('$')
+                    r.name.to_ascii_uppercase().starts_with(&prefix)
+                        && self.belongs(r, resource)
+                        && !r.name.contains('$')
                 });
                 let mut resources = Vec::new();
                 for root in own {
@@ -528,7 +530,10 @@ mod tests {
         let r = Resolver::new(&image);
         let at = |path: &str| r.leaf(path).map(|l| l.offset);
         assert_eq!((at("A.P1.x"), at("conf.b.p1.x"), at("P2.x")), (Ok(64), Ok(164), Ok(166)));
-        assert_eq!((at("A.g"), at("B.g"), at("c"), at("A.c"), at("Conf.c")), (Ok(70), Ok(170), Ok(200), Ok(200), Ok(200)));
+        assert_eq!(
+            (at("A.g"), at("B.g"), at("c"), at("A.c"), at("Conf.c")),
+            (Ok(70), Ok(170), Ok(200), Ok(200), Ok(200))
+        );
         assert_eq!(at("P1.x"), Err("`P1.x` is ambiguous; write A.P1.x or B.P1.x".into()));
         assert_eq!(at("g"), Err("`g` is ambiguous; write A.g or B.g".into()));
         assert!(r.columns("P1").unwrap_err().contains("ambiguous"));

@@ -76,7 +76,8 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     for value in &restored {
         path::write(mem.as_mut_slice(), value.offset, value.bit, &value.bytes);
     }
-    let measured = flags.stats.is_some() || flags.stats_svg.is_some() || image.tasks.iter().any(|t| t.deadline_ns.is_some());
+    let measured =
+        flags.stats.is_some() || flags.stats_svg.is_some() || image.tasks.iter().any(|t| t.deadline_ns.is_some());
     let mut writers = writers.into_iter();
     let mut workers = Vec::new();
     for (number, engine) in engines.iter_mut().enumerate() {

@@ -170,14 +170,15 @@ fn cycles<'m>(
         }
         worker.tick(cycle, tick, part, &mut shared)?;
         worker.finish_cycle(cycle, part);
-        shared.meet(|edges, home| match home {
-            Some(home) => {
-                retain.with(|r| r.iter_mut().for_each(|r| r.capture(home.start(), home.as_slice())));
-                if worker.resource == 0 { edges.end(part, Some(home)) } else { Ok(()) }
-            }
-            None => Ok(()),
-        })
-        .map_err(Halt::Driver)?;
+        shared
+            .meet(|edges, home| match home {
+                Some(home) => {
+                    retain.with(|r| r.iter_mut().for_each(|r| r.capture(home.start(), home.as_slice())));
+                    if worker.resource == 0 { edges.end(part, Some(home)) } else { Ok(()) }
+                }
+                None => Ok(()),
+            })
+            .map_err(Halt::Driver)?;
         cycle += 1;
     }
 }

@@ -182,8 +182,7 @@ mod tests {
     #[test]
     fn values_stand_where_they_change() {
         let path = std::env::temp_dir().join(format!("plcc-vcd-{}", std::process::id()));
-        let root =
-            |name: &str, offset, ty| Root { name: name.into(), offset, ty, ..Root::default() };
+        let root = |name: &str, offset, ty| Root { name: name.into(), offset, ty, ..Root::default() };
         let image = Image {
             types: vec![
                 TypeDesc::Elem(Elem::Bool.code()),

@@ -48,11 +48,7 @@ impl Watchdog {
     ///
     /// # Safety
     /// `region` must point to a region that lives longer than this value.
-    pub unsafe fn new(
-        region: *mut u8,
-        tasks: &[Task],
-        ready: impl FnOnce() + Send + 'static,
-    ) -> std::io::Result<Self> {
+    pub unsafe fn new(region: *mut u8, tasks: &[Task], ready: impl FnOnce() + Send + 'static) -> std::io::Result<Self> {
         // SAFETY: the header lies inside every region.
         let flag = unsafe { region.add(DEADLINE_FLAG as usize) }.cast::<u32>();
         let limits_ns: Vec<i64> = tasks.iter().map(|t| t.watchdog_ns).collect();

@@ -64,15 +64,16 @@ impl Worker<'_> {
         let this = &image.resources[*resource];
         let first = image.tasks_of(*resource).start;
         if self.events {
-            meeting.meet(|edges, mut home| {
-                edges.inputs(part, home.as_deref_mut())?;
-                schedule.sample(|at| {
-                    let inside = |p: &Part| p.as_slice().get((at as usize).wrapping_sub(p.start())).copied();
-                    inside(part).or_else(|| home.as_deref().and_then(inside)).unwrap_or(0)
-                });
-                Ok(())
-            })
-            .map_err(Halt::Driver)?;
+            meeting
+                .meet(|edges, mut home| {
+                    edges.inputs(part, home.as_deref_mut())?;
+                    schedule.sample(|at| {
+                        let inside = |p: &Part| p.as_slice().get((at as usize).wrapping_sub(p.start())).copied();
+                        inside(part).or_else(|| home.as_deref().and_then(inside)).unwrap_or(0)
+                    });
+                    Ok(())
+                })
+                .map_err(Halt::Driver)?;
         }
         schedule.release(tick, |n| {
             let task = first + n;

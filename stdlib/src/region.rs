@@ -15,8 +15,5 @@ pub const FAULT_SOURCE: u32 = 16;
 pub const FAULT_INSTANCE: u32 = 20;
 /// `[i64; 3]`: the offending values; their meaning by fault stands in [`fault`](crate::fault).
 pub const FAULT_OPERANDS: u32 = 24;
-/// `u32`: 1 + index into the source table: the call through which a function that faulted was left for the instance of
-/// [`FAULT_INSTANCE`]; 0 where that instance's own code faulted.
-pub const FAULT_CALL: u32 = 48;
 /// Size of the header, bytes; variables start here.
 pub const HEADER_BYTES: u32 = 64;

@@ -13,6 +13,7 @@ mod new;
 mod pipeline;
 mod project;
 mod render;
+mod statements;
 
 use clap::Parser;
 use cli::{Cli, Color, Command, MessageFormat, SourceArgs};
@@ -92,15 +93,16 @@ fn run(args: &cli::RunArgs, color: Color) -> Result<u8, Failure> {
         code.opt = code.opt.or(Some(cli::OptArg::None));
     }
     let compiled = pipeline::compile(&checked, app, &project, &parsed, &code, false)?;
-    let mut engine: Box<dyn plcc_runtime::engine::Engine> = match args.engine {
-        cli::EngineArg::Interp => Box::new(engines::Interpreter(plcc_mir::interp::Interp::new(&compiled.program))),
+    let resources = compiled.image.resources.len();
+    let mut engines = match args.engine {
+        cli::EngineArg::Interp => engines::Interpreter::engines(&compiled.program, resources),
         cli::EngineArg::Jit => {
             let code = plcc_codegen::jit::compile(&compiled.program)
                 .unwrap_or_else(|e| plcc_diag::bug!("the code generator refused: {e:?}"));
-            Box::new(engines::Jit::new(code))
+            engines::Jit::engines(code, resources)
         }
     };
-    Ok(plcc_runtime::run::run(&compiled.image, engine.as_mut(), &args.run))
+    Ok(plcc_runtime::run::run(&compiled.image, &mut engines, &args.run))
 }
 
 fn nothing_to_run() -> Failure {

@@ -48,7 +48,10 @@ impl Csv {
                 let mut out = Outputs {
                     columns: columns.iter().map(|(_, l)| Leaf { offset: l.offset - out_start, ..l.clone() }).collect(),
                     image: Image { types: image.types.clone(), ..Image::default() },
-                    out: BufWriter::with_capacity(1 << 16, trace::create(Path::new(path), "outputs").map_err(|e| (3, e))?),
+                    out: BufWriter::with_capacity(
+                        1 << 16,
+                        trace::create(Path::new(path), "outputs").map_err(|e| (3, e))?,
+                    ),
                     line: "cycle".into(),
                 };
                 for (name, _) in &columns {

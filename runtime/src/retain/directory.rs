@@ -52,8 +52,14 @@ pub struct Entry {
 pub enum Kind {
     /// By its code.
     Elem(u8),
-    Enum { elem: u8, values: Vec<(String, i64)> },
-    String { wide: bool, capacity: u32 },
+    Enum {
+        elem: u8,
+        values: Vec<(String, i64)>,
+    },
+    String {
+        wide: bool,
+        capacity: u32,
+    },
 }
 
 /// A restored value: bytes for a place in the memory.
@@ -139,7 +145,8 @@ impl Directory {
         });
         let entry = |e: &Entry| {
             let kind = self.kinds.get(e.kind as usize);
-            kind.is_some_and(|k| u64::from(e.at) + u64::from(k.bytes()) <= at && k.bytes() > 0) && e.bit.is_none_or(|b| b < 8)
+            kind.is_some_and(|k| u64::from(e.at) + u64::from(k.bytes()) <= at && k.bytes() > 0)
+                && e.bit.is_none_or(|b| b < 8)
         };
         sets && at <= u64::from(u32::MAX) && self.entries.iter().all(entry)
     }

@@ -14,8 +14,8 @@
 //! two numbers differ is half written and does not count.
 
 use super::directory::Directory;
-use super::file::{Id, Set, crc32};
 use super::empty_sets;
+use super::file::{Id, Set, crc32};
 use std::ffi::CString;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering, fence};
@@ -230,7 +230,8 @@ impl Live {
             Ok(map) => (map, None),
             Err(e) => {
                 let own = map_descriptor(-1, bytes, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
-                let own = own.unwrap_or_else(|_| Map { base: Vec::leak(vec![0u64; bytes / 8 + 1]).as_mut_ptr().cast(), bytes });
+                let own = own
+                    .unwrap_or_else(|_| Map { base: Vec::leak(vec![0u64; bytes / 8 + 1]).as_mut_ptr().cast(), bytes });
                 (own, Some(format!("no shared memory for retained values ({e})")))
             }
         };

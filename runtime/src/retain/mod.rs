@@ -14,9 +14,9 @@ mod directory;
 mod disk;
 mod file;
 mod live;
-mod report;
 #[cfg(test)]
 mod power_cuts;
+mod report;
 
 use crate::image::Image;
 use crate::path::Resolver;

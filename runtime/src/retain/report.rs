@@ -81,7 +81,8 @@ fn read(path: &Path) -> Result<Old, Problem> {
     let fail = |e: std::io::Error| (3, format!("cannot read retain file `{}`: {e}", path.display()));
     let bytes = std::fs::read(path).map_err(fail)?;
     let meta = std::fs::metadata(path).map_err(fail)?;
-    let mut old = parse(&bytes).ok_or_else(|| (3, format!("`{}` is no retain file, or it is damaged", path.display())))?;
+    let mut old =
+        parse(&bytes).ok_or_else(|| (3, format!("`{}` is no retain file, or it is damaged", path.display())))?;
     // A program that runs, or was killed, has newer values in memory.
     let live = live::read(&old.id, (meta.dev(), meta.ino()), &old.directory);
     for (set, live) in old.sets.iter_mut().zip(live) {

@@ -17,7 +17,8 @@ where
     let mut rows = 0;
     for (name, measures) in tasks {
         for (column, (measure, histogram)) in measures.enumerate() {
-            let at = (MARGIN.0 + column as f64 * (PANEL.0 + MARGIN.0), MARGIN.1 + rows as f64 * (PANEL.1 + MARGIN.1 + 16.0));
+            let at =
+                (MARGIN.0 + column as f64 * (PANEL.0 + MARGIN.0), MARGIN.1 + rows as f64 * (PANEL.1 + MARGIN.1 + 16.0));
             panel(&mut body, at, &format!("{name}: {measure}"), histogram);
         }
         rows += 1;
@@ -35,12 +36,7 @@ fn panel(out: &mut String, (x, y): (f64, f64), title: &str, histogram: &Histogra
     let (width, height) = PANEL;
     // Writing to a String does not fail.
     let _ = writeln!(out, "<text x=\"{x}\" y=\"{}\">{}</text>", y - 22.0, escaped(title));
-    let _ = writeln!(
-        out,
-        "<line class=\"axis\" x1=\"{x}\" y1=\"{0}\" x2=\"{1}\" y2=\"{0}\"/>",
-        y + height,
-        x + width
-    );
+    let _ = writeln!(out, "<line class=\"axis\" x1=\"{x}\" y1=\"{0}\" x2=\"{1}\" y2=\"{0}\"/>", y + height, x + width);
     if histogram.is_empty() {
         let _ = writeln!(out, "<text x=\"{x}\" y=\"{}\">nothing measured</text>", y - 8.0);
         return;
