@@ -116,7 +116,9 @@ impl<'a> Edges<'a> {
         for value in &self.image.safe_state {
             path::write(place.as_mut_slice(), value.offset - start as u32, value.bit, &value.bytes);
         }
-        self.driver.write(area(self.image, OUTPUTS, start, place.as_mut_slice()))
+        let outputs = area(self.image, OUTPUTS, start, place.as_mut_slice());
+        self.driver.write(outputs)?;
+        self.driver.end(outputs)
     }
 
     /// The outputs of a task that starts again: their safe values, in the copy and, through it, outside.

@@ -1,7 +1,7 @@
 //! Tells a fault: name, place, POU and instance, the offending values, the cycle (semantics.md \[E1\]).
 
 use crate::engine::Part;
-use crate::image::{Image, Statement, TypeDesc};
+use crate::image::{Image, Root, Statement, TypeDesc};
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::region;
 
@@ -45,27 +45,32 @@ pub fn statement<'i>(image: &'i Image, part: &Part) -> (Option<&'i Statement>, u
 /// The path of the instance of a POU that starts at an offset. The variables of a program are roots of their own; its name
 /// is what stands in front of their dot.
 ///
-/// The first part of an instance starts where the instance does, so the POU decides between them; where none fits, the
-/// outermost is told.
+/// The first part of an instance starts where the instance does, so the POU decides between them. A function has no
+/// instance: the one that called it is told, of those that start there the program, else the outermost.
 fn instance_path(image: &Image, pou: &str, offset: u32) -> Option<String> {
     let pou = pou.split('.').next().unwrap_or(pou);
+    let full = |root: &Root, path: &str| match root.resource.and_then(|r| image.resources.get(r as usize)) {
+        Some(resource) if image.resources.len() > 1 => format!("{}.{path}", resource.name),
+        _ => path.to_string(),
+    };
     let mut outermost = None;
     for root in &image.roots {
         let mut found = Vec::new();
         inside(image, &root.name, root.offset, root.ty, offset, &mut found);
         if let Some((path, _)) = found.iter().find(|(_, name)| name.eq_ignore_ascii_case(pou)) {
-            return Some(path.clone());
+            return Some(full(root, path));
         }
-        outermost = outermost.or(found.into_iter().next().map(|(path, _)| path));
+        outermost = outermost.or(found.into_iter().next().map(|(path, _)| full(root, &path)));
     }
-    // Not a function block: the program whose variables start there.
     let program = || {
         let own = image.roots.iter().filter(|r| r.offset >= offset && r.name.contains('.') && r.bit.is_none());
-        own.min_by_key(|r| r.offset)?.name.split_once('.').map(|(program, _)| program.to_string())
+        let root = own.min_by_key(|r| r.offset)?;
+        root.name.split_once('.').map(|(program, _)| full(root, program))
     };
+    let starts_program = image.tasks.iter().flat_map(|t| &t.programs).any(|(start, _)| *start == offset);
     let is_block =
         image.types.iter().any(|t| matches!(t, TypeDesc::Struct { name, .. } if name.eq_ignore_ascii_case(pou)));
-    if is_block { outermost.or_else(program) } else { program().or(outermost) }
+    if is_block || !starts_program { outermost.or_else(program) } else { program().or(outermost) }
 }
 
 /// Collects the structures that start at `wanted` inside a variable, with the names of their types, outermost first.
@@ -104,7 +109,7 @@ fn inside(image: &Image, name: &str, start: u32, ty: u32, wanted: u32, found: &m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Field, Root};
+    use crate::image::{Field, Task};
     use plcc_stdlib::elem::Elem;
 
     /// `Main` at 64: `b : ARRAY [1..2] OF Outer` (16 bytes each), whose first variable is `i : Inner`, then `n : INT`.
@@ -119,6 +124,7 @@ mod tests {
                 TypeDesc::Array { dims: vec![(1, 2)], elem: 2, stride: 16 },
             ],
             roots: vec![root("Main.b", 64, 3), root("Main.n", 96, 0)],
+            tasks: vec![Task { programs: vec![(64, 34)], ..Task::default() }],
             ..Image::default()
         }
     }
@@ -131,5 +137,7 @@ mod tests {
         assert_eq!(path("Outer", 64).as_deref(), Some("Main.b[1]"));
         assert_eq!(path("Outer.Act", 80).as_deref(), Some("Main.b[2]"));
         assert_eq!(path("Inner", 80).as_deref(), Some("Main.b[2].i"));
+        // A function that the block at 80 called.
+        assert_eq!(path("Helper", 80).as_deref(), Some("Main.b[2]"));
     }
 }

@@ -13,7 +13,9 @@ mod new;
 mod pipeline;
 mod project;
 mod render;
+mod retain;
 mod statements;
+mod timing;
 
 use clap::Parser;
 use cli::{Cli, Color, Command, MessageFormat, SourceArgs};
@@ -53,6 +55,8 @@ pub fn execute(cli: Cli) -> u8 {
         Command::Run(args) => run(&args, color),
         Command::Check(args) => check(&args.sources, color),
         Command::Graph(args) => graph::graph(&args, color),
+        Command::Retain { action } => retain::retain(&action, color),
+        Command::Trace(args) => timing::trace(&args),
         Command::Explain { name } => explain::page(&name).map(|page| {
             print!("{page}");
             0

@@ -93,10 +93,10 @@ fn report_foreign(cx: &mut Cx, app: &Application, number: usize) {
     }
     let mut told = Vec::new();
     for (var, span) in globals.found {
-        if app.has_global(number, var, &cx.defs) || told.contains(&span) {
+        if app.has_global(number, var, &cx.defs) || told.contains(&var) {
             continue;
         }
-        told.push(span);
+        told.push(var);
         let def = &cx.defs.vars[var];
         let (name, declared, running) = (def.name.clone(), def.span, resource.name.clone());
         let owner =

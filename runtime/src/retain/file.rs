@@ -17,7 +17,8 @@ use super::disk::{Disk, RealDisk};
 use super::empty_sets;
 use std::io;
 
-const MAGIC: &[u8; 8] = b"plccret2";
+/// First bytes of the file; the digit is the version.
+pub const MAGIC: &[u8; 8] = b"plccret2";
 const HEAD_BYTES: usize = 32;
 const SLOT_HEAD_BYTES: usize = 12;
 /// Slots share no block of a medium, whatever its size up to this.

@@ -23,6 +23,7 @@ use crate::path::Resolver;
 use directory::Directory;
 pub use directory::Restored;
 use disk::RealDisk;
+pub use file::MAGIC;
 use file::{Set, Store};
 use live::Live;
 pub use live::Writer;
