@@ -90,6 +90,11 @@ impl Part<'_> {
 }
 
 impl Region {
+    /// All of it as one part: that of an application of one resource.
+    pub fn whole(&mut self) -> Part<'_> {
+        Part { whole: self.as_mut_ptr(), start: 0, bytes: self.bytes, region: std::marker::PhantomData }
+    }
+
     /// Parts of it (first byte, length), which must be disjoint.
     ///
     /// # Panics

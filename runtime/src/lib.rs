@@ -6,11 +6,11 @@
 
 mod charts;
 pub mod cli;
-mod clock;
+pub mod clock;
 mod edges;
 pub mod engine;
 pub mod entry;
-mod fault;
+pub mod fault;
 mod force;
 mod history;
 pub mod image;
@@ -23,10 +23,10 @@ pub mod run;
 mod scan;
 mod signals;
 mod stats;
-mod stimulus;
-mod task;
+pub mod stimulus;
+pub mod task;
 mod threads;
 mod trace;
 mod vcd;
-mod watchdog;
+pub mod watchdog;
 mod worker;

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// One value to write.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Write {
     offset: u32,
     bit: Option<u8>,
@@ -13,7 +13,7 @@ struct Write {
 }
 
 /// All rows, in order of their cycles.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Stimulus {
     rows: Vec<(u64, Vec<Write>)>,
     next: usize,
@@ -111,6 +111,11 @@ impl Stimulus {
             value.offset = inside.ok_or_else(|| format!("a variable at byte {}", value.offset))?;
         }
         Ok(())
+    }
+
+    /// Back to the first row.
+    pub fn rewind(&mut self) {
+        self.next = 0;
     }
 
     /// Writes the values of a cycle.

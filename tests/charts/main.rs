@@ -3,7 +3,7 @@
 //! interpreter and native code (JIT), and the traces of linked programs are those of the interpreter.
 //!
 //! `RANDOM_CHARTS` (default 600) says how many, `RANDOM_CHARTS_LINKED` (default 60) how many of them are linked too,
-//! `RANDOM_SEED` where to start. A failure prints the seed and the chart that differs; `RANDOM_KEEP` names a file for its program.
+//! `RANDOM_CHARTS_PASSES` (default 50) how many run before and after each pass of the optimiser, `RANDOM_SEED` where to start. A failure prints the seed and the chart that differs; `RANDOM_KEEP` names a file for its program.
 
 mod generate;
 mod model;
@@ -14,7 +14,10 @@ use model::{ActionKind, Chart, Model, Time};
 use plcc_hir::{Checked, Profile};
 use plcc_mir::interp::Interp;
 use plcc_mir::layout::{Layout, Slot};
-use plcc_tests::{command, compile::compile_with_layout};
+use plcc_tests::memory::{bytes_of, region};
+use plcc_tests::passes::{Run, agree as passes_agree};
+use plcc_tests::reduce::reduce;
+use plcc_tests::{command, compile::compile, compile::compile_with_layout};
 use std::path::Path;
 use structure::Ruled;
 
@@ -59,17 +62,6 @@ fn batch(seed: u64, count: u64, built: bool) -> Batch {
          END_CONFIGURATION\n"
     ));
     Batch { seed: stimulus, charts, text, profile }
-}
-
-/// A region with the alignment that compiled code expects.
-#[repr(C, align(64))]
-#[derive(Clone, Copy)]
-struct Line([u8; 64]);
-
-fn bytes_of(lines: &mut [Line]) -> &mut [u8] {
-    let (pointer, length) = (lines.as_mut_ptr(), lines.len() * 64);
-    // SAFETY: a Line is 64 plain bytes.
-    unsafe { std::slice::from_raw_parts_mut(pointer.cast(), length) }
 }
 
 /// Where the variables of a chart lie.
@@ -162,7 +154,7 @@ fn agree(batch: &Batch, seen: &mut Seen) -> Result<(), (usize, String)> {
     let mut interp = Interp::new(&program);
     let code = plcc_codegen::jit::compile(&program).map_err(|e| all(format!("{e:?}")))?;
     let size = program.region_bytes as usize;
-    let (mut a, mut b) = (vec![Line([0; 64]); size.div_ceil(64)], vec![Line([0; 64]); size.div_ceil(64)]);
+    let (mut a, mut b) = (region(size), region(size));
     let (a, b) = (&mut bytes_of(&mut a)[..size], &mut bytes_of(&mut b)[..size]);
     interp.init(a, true);
     code.init(b, true);
@@ -275,4 +267,28 @@ fn linked(seed: u64, batch: &Batch) {
     assert_eq!(native.code, 0, "seed {seed}: {}", native.stderr);
     assert_eq!(interp.stdout.lines().count() as i64, CYCLES + 1);
     assert!(interp.stdout == native.stdout, "seed {seed}: the traces differ\n{}", batch.text);
+}
+
+/// The passes of the optimiser keep the meaning of charts.
+#[test]
+fn passes_keep_the_meaning_of_charts() {
+    let (count, first) = (setting("RANDOM_CHARTS_PASSES", 50), setting("RANDOM_SEED", 1) + 2_000_000);
+    let size = count.clamp(1, BATCH);
+    for seed in first..first + count.div_ceil(size) {
+        let batch = batch(seed, size, false);
+        let run = Run { cycles: CYCLES as usize, inputs: &|_, _| {}, native: true };
+        let outcome = |text: &str| -> Option<plcc_tests::passes::Disagreement> {
+            let program = compile(text, batch.profile).ok()?;
+            passes_agree(&program, plcc_mir::opt::passes(), &run).err()
+        };
+        let work = || {
+            let Some(found) = outcome(&batch.text) else { return };
+            let small = reduce(&batch.text, |text| outcome(text).is_some_and(|other| other.pass == found.pass));
+            panic!("seed {seed}, {:?}: {found}\n{small}", batch.profile);
+        };
+        std::thread::scope(|s| {
+            let thread = std::thread::Builder::new().stack_size(256 << 20).spawn_scoped(s, work);
+            thread.expect("a thread starts").join().unwrap_or_else(|e| std::panic::resume_unwind(e));
+        });
+    }
 }

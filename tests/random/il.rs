@@ -4,11 +4,11 @@
 //! parentheses, a program counter. Programs have segments behind labels, jumps forwards and backwards between them (with the
 //! current result carried over, or not), and a budget of backward jumps, so that each program ends.
 
-use super::{bytes_of, region};
 use fastrand::Rng;
 use plcc_hir::{Init, Profile};
 use plcc_mir::interp::Interp;
 use plcc_tests::compile::{check, lower};
+use plcc_tests::memory::{bytes_of, region};
 use std::fmt::Write;
 
 const CYCLES: i64 = 4;
@@ -541,6 +541,12 @@ fn all_agree(list: &[Ins], text: &str) -> Result<bool, String> {
         }
     }
     Ok(false)
+}
+
+/// The text of a random program.
+pub fn random_text(seed: u64) -> String {
+    let mut generator = Generator { rng: Rng::with_seed(seed), labels: Vec::new() };
+    source(&generator.program())
 }
 
 #[test]

@@ -2,13 +2,16 @@
 //! the same trace when many of them are linked into one executable.
 //!
 //! `RANDOM_PROGRAMS` (default 400) says how many for interpreter against JIT, `RANDOM_LINKED` (default 60) how many for the
-//! linked batches, `RANDOM_SEED` where to start. A failure prints the seed and the program.
+//! linked batches, `RANDOM_PASSES` (default 120) how many for the passes of the optimiser, `RANDOM_SEED` where to start. A
+//! failure prints the seed and the program.
 
 mod generate;
 mod il;
+mod passes;
 
 use plcc_hir::Profile;
 use plcc_mir::interp::Interp;
+use plcc_tests::memory::{bytes_of, difference, excerpt, region};
 use plcc_tests::{command, compile::compile};
 use std::path::Path;
 
@@ -18,21 +21,6 @@ const TICK_NS: i64 = 10_000_000;
 
 fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}
-
-/// A region with the alignment that compiled code expects.
-#[repr(C, align(64))]
-#[derive(Clone, Copy)]
-struct Line([u8; 64]);
-
-fn region(bytes: usize) -> Vec<Line> {
-    vec![Line([0; 64]); bytes.div_ceil(64)]
-}
-
-fn bytes_of(lines: &mut [Line]) -> &mut [u8] {
-    let (pointer, length) = (lines.as_mut_ptr(), lines.len() * 64);
-    // SAFETY: a Line is 64 plain bytes.
-    unsafe { std::slice::from_raw_parts_mut(pointer.cast(), length) }
 }
 
 /// How a program ran.
@@ -52,7 +40,7 @@ fn both_engines(text: &str) -> Result<Outcome, String> {
     let (a, b) = (&mut bytes_of(&mut a)[..size], &mut bytes_of(&mut b)[..size]);
     interp.init(a, true);
     code.init(b, true);
-    same(a, b, &program, "after the cold start")?;
+    same(a, b, "after the cold start")?;
     for cycle in 1..=CYCLES {
         let now = (cycle - 1) * TICK_NS;
         let x = interp.scan(a, 0, now);
@@ -60,7 +48,7 @@ fn both_engines(text: &str) -> Result<Outcome, String> {
         if x != y {
             return Err(format!("cycle {cycle}: the interpreter gives {x}, native code {y}"));
         }
-        same(a, b, &program, &format!("after cycle {cycle} (status {x})"))?;
+        same(a, b, &format!("after cycle {cycle} (status {x})"))?;
         if x != 0 {
             return Ok(Outcome::Fault(x));
         }
@@ -68,37 +56,17 @@ fn both_engines(text: &str) -> Result<Outcome, String> {
     Ok(Outcome::Finished)
 }
 
-/// Compares whole regions. Sign and payload of a NaN are not defined: words that are NaN in both count as equal.
-fn same(a: &[u8], b: &[u8], program: &plcc_mir::ir::Program, when: &str) -> Result<(), String> {
-    let mut at = 0;
-    while at < a.len() {
-        if a[at] == b[at] {
-            at += 1;
-            continue;
-        }
-        let nan = |width: usize| {
-            let start = at / width * width;
-            let word = |m: &[u8]| m.get(start..start + width).map(|w| w.to_vec());
-            let is_nan = |w: Option<Vec<u8>>| match w.as_deref() {
-                Some([x, y, z, w]) => f32::from_le_bytes([*x, *y, *z, *w]).is_nan(),
-                Some(w) if w.len() == 8 => w.try_into().is_ok_and(|w| f64::from_le_bytes(w).is_nan()),
-                _ => false,
-            };
-            (is_nan(word(a)) && is_nan(word(b))).then_some(start + width)
-        };
-        match nan(4).or_else(|| nan(8)) {
-            Some(next) => at = next,
-            None => {
-                return Err(format!(
-                    "memory differs {when} at byte {at} of {}: interpreter {:02x?}, native {:02x?}",
-                    program.region_bytes,
-                    &a[at..(at + 8).min(a.len())],
-                    &b[at..(at + 8).min(b.len())]
-                ));
-            }
-        }
+/// Compares whole regions.
+fn same(a: &[u8], b: &[u8], when: &str) -> Result<(), String> {
+    match difference(a, b) {
+        None => Ok(()),
+        Some(at) => Err(format!(
+            "memory differs {when} at byte {at} of {}: interpreter {}, native {}",
+            a.len(),
+            excerpt(a, at),
+            excerpt(b, at)
+        )),
     }
-    Ok(())
 }
 
 /// Work on a thread with the stack that the driver has.
@@ -109,6 +77,21 @@ fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     })
 }
 
+/// Work on seeds, by as many threads as there are processors.
+fn shared_out<T: Send>(seeds: std::ops::Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
+    let (work, seeds) = (&work, &seeds);
+    std::thread::scope(|s| {
+        let threads: Vec<_> = (0..workers)
+            .map(|w| {
+                let own = move || (seeds.start + w..seeds.end).step_by(workers as usize).map(work).collect::<Vec<T>>();
+                std::thread::Builder::new().stack_size(256 << 20).spawn_scoped(s, own).expect("a thread starts")
+            })
+            .collect();
+        threads.into_iter().flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e))).collect()
+    })
+}
+
 fn source(body: &str) -> String {
     format!("{}{body}", generate::SHARED)
 }
@@ -116,26 +99,13 @@ fn source(body: &str) -> String {
 #[test]
 fn interpreter_and_jit_agree() {
     let (count, first) = (setting("RANDOM_PROGRAMS", 400), setting("RANDOM_SEED", 1));
-    let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64).min(count.max(1));
-    let totals: Vec<(u64, u64)> = std::thread::scope(|s| {
-        let threads: Vec<_> = (0..workers)
-            .map(|w| {
-                let work = move || {
-                    let (mut finished, mut faults) = (0, 0);
-                    for seed in (first + w..first + count).step_by(workers as usize) {
-                        let text = source(&generate::program(seed, "", true));
-                        match both_engines(&text) {
-                            Ok(Outcome::Finished) => finished += 1,
-                            Ok(Outcome::Fault(_)) => faults += 1,
-                            Err(e) => panic!("seed {seed}: {e}\n{text}"),
-                        }
-                    }
-                    (finished, faults)
-                };
-                std::thread::Builder::new().stack_size(256 << 20).spawn_scoped(s, work).expect("a thread starts")
-            })
-            .collect();
-        threads.into_iter().map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e))).collect()
+    let totals = shared_out(first..first + count, |seed| {
+        let text = source(&generate::program(seed, "", true));
+        match both_engines(&text) {
+            Ok(Outcome::Finished) => (1, 0),
+            Ok(Outcome::Fault(_)) => (0, 1),
+            Err(e) => panic!("seed {seed}: {e}\n{text}"),
+        }
     });
     let finished: u64 = totals.iter().map(|t| t.0).sum();
     let faults: u64 = totals.iter().map(|t| t.1).sum();

@@ -1,6 +1,9 @@
-//! What the test programs share: running plcc, comparing texts.
+//! What the test programs share: running plcc, comparing texts, comparing programs before and after each pass.
 
 pub mod compile;
+pub mod memory;
+pub mod passes;
+pub mod reduce;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

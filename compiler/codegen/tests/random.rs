@@ -1,7 +1,14 @@
-//! Random programs from a seed: interpreter and native code must leave the same region, faults and all.
+//! Random programs from a seed: interpreter and native code must leave the same region, faults and all, and so must the
+//! interpreter before and after each pass of the optimiser.
 //!
 //! `PLCC_SEED=n` runs one program and prints it when it fails; `PLCC_PROGRAMS=n` runs more than usual.
 
+#[path = "../../../tests/src/memory.rs"]
+#[allow(dead_code)]
+mod memory;
+#[path = "../../../tests/src/passes.rs"]
+#[allow(dead_code)]
+mod passes;
 mod support;
 
 use plcc_mir::build::Builder;
@@ -371,6 +378,64 @@ impl Generator<'_> {
         self.b.switch_to(done);
     }
 
+    /// Blocks that go to each other at will, with two ways in: a graph that is not made of loops. It ends when its fuel does.
+    fn tangle(&mut self) {
+        let repr = self.random.pick(&Repr::ALL);
+        let blocks: Vec<BlockId> = (0..2 + self.random.below(4)).map(|_| self.b.block()).collect();
+        let params: Vec<[ValueId; 2]> =
+            blocks.iter().map(|b| [self.b.block_param(*b, Repr::I8), self.b.block_param(*b, repr)]).collect();
+        let exit = self.b.block();
+        let result = self.b.block_param(exit, repr);
+        let outside = self.pool.len();
+        let fuel = self.b.number(Repr::I8, 2 + self.random.below(7));
+        let (first, second) = (self.b.block(), self.b.block());
+        let cond = self.truth();
+        self.b.branch(cond, first, second);
+        for (n, edge) in [first, second].into_iter().enumerate() {
+            self.b.switch_to(edge);
+            let value = self.value(repr);
+            self.b.jump(blocks[n], &[fuel, value]);
+            self.pool.truncate(outside);
+        }
+        self.loops += 2;
+        for (block, [fuel, carried]) in blocks.iter().zip(params) {
+            self.b.switch_to(*block);
+            self.pool.extend([fuel, carried]);
+            self.statements(0);
+            let (one, zero) = (self.b.number(Repr::I8, 1), self.b.number(Repr::I8, 0));
+            let fewer = self.b.op(PrimOp::Sub, Repr::I8, &[fuel, one]);
+            let done = self.b.op(PrimOp::Eq, Repr::I8, &[fuel, zero]);
+            let (leave, go) = (self.b.block(), self.b.block());
+            self.b.branch(done, leave, go);
+            let inside = self.pool.len();
+            self.b.switch_to(leave);
+            let last = self.value(repr);
+            self.b.jump(exit, &[last]);
+            self.pool.truncate(inside);
+            self.b.switch_to(go);
+            if self.random.chance(50) {
+                self.b.poll();
+            }
+            let selector = self.value(Repr::I16);
+            let three = self.b.number(Repr::I16, 3);
+            let selector = self.b.op(PrimOp::And, Repr::I16, &[selector, three]);
+            let edges: Vec<BlockId> = (0..3).map(|_| self.b.block()).collect();
+            self.b.switch(selector, &[(0, edges[0]), (2, edges[1])], edges[2]);
+            let inside = self.pool.len();
+            for edge in edges {
+                self.b.switch_to(edge);
+                let value = self.value(repr);
+                let to = self.random.pick(&blocks);
+                self.b.jump(to, &[fewer, value]);
+                self.pool.truncate(inside);
+            }
+            self.pool.truncate(outside);
+        }
+        self.loops -= 2;
+        self.b.switch_to(exit);
+        self.pool.push(result);
+    }
+
     fn call(&mut self) {
         if self.calls == 0 || self.loops > 1 || self.callees.is_empty() {
             return;
@@ -382,6 +447,8 @@ impl Generator<'_> {
         let instance = callee.has_instance.then(|| self.place(INSTANCE_BYTES));
         let id = FuncId::from_usize(n as usize);
         self.b.set_source(SourceId::from_raw(self.random.below(100) as u32));
+        // Every byte of a frame is set before it is read: by the caller, as lowering does with arguments.
+        self.b.zero(Builder::callee_frame(0), FRAME_BYTES);
         let argument = self.value(Repr::I32);
         self.b.store(Builder::callee_frame(self.random.below(60) as u32), argument);
         let result = if self.random.chance(40) {
@@ -402,7 +469,8 @@ impl Generator<'_> {
                 78..82 => self.check(),
                 82..88 if depth > 0 => self.branch(depth - 1),
                 88..91 if depth > 0 => self.choice(depth - 1),
-                91..96 if depth > 0 => self.counted_loop(depth - 1),
+                91..95 if depth > 0 => self.counted_loop(depth - 1),
+                95..97 if depth > 0 => self.tangle(),
                 _ => self.call(),
             }
         }
@@ -432,6 +500,9 @@ fn generate(seed: u64) -> Program {
             loops: 0,
             calls: if entry { 4 } else { 2 },
         };
+        if entry {
+            generator.b.zero(Place::new(Base::Frame, 0), FRAME_BYTES);
+        }
         generator.statements(3);
         generator.statements(2);
         let result = callee.result.map(|r| generator.value(r));
@@ -439,7 +510,13 @@ fn generate(seed: u64) -> Program {
         funcs.push(generator.b.finish(FRAME_BYTES));
         callees.push(callee);
     }
-    program(funcs, 1)
+    // What the constants among the references point into.
+    Program { addressable: (HEADER_BYTES, 1024), ..program(funcs, 1) }
+}
+
+/// What lies in the globals before a scan.
+fn inputs(random: &mut Random) -> Vec<u8> {
+    (HEADER_BYTES..GLOBALS_END).map(|_| (random.next() >> 32) as u8).collect()
 }
 
 fn run(seed: u64) -> u32 {
@@ -448,8 +525,7 @@ fn run(seed: u64) -> u32 {
     let mut engines = Engines::new(&program);
     let mut faults = 0;
     for scan in 0..4 {
-        let bytes: Vec<u8> = (HEADER_BYTES..GLOBALS_END).map(|_| (random.next() >> 32) as u8).collect();
-        engines.write(0, &bytes);
+        engines.write(0, &inputs(&mut random));
         faults += u32::from(engines.scan(0, scan) != 0);
     }
     faults
@@ -470,4 +546,25 @@ fn engines_agree() {
     }
     // Both ends of a scan are met.
     assert!(faults > 0 && u64::from(faults) < programs * 4, "{faults} faults");
+}
+
+/// Graphs and forms that lowering never makes; what a pass makes of them means the same.
+#[test]
+fn passes_keep_the_meaning() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let (first, last) = match number("PLCC_SEED") {
+        Some(seed) => (seed, seed),
+        None => (1_000_001, 1_000_000 + number("PLCC_PROGRAMS").unwrap_or(300)),
+    };
+    for seed in first..=last {
+        let program = generate(seed);
+        let write = |cycle: usize, mem: &mut [u8]| {
+            let mut random = Random((seed << 8 | cycle as u64) ^ 0x5DEE_CE66_D001 | 1);
+            mem[HEADER_BYTES as usize..GLOBALS_END as usize].copy_from_slice(&inputs(&mut random));
+        };
+        let run = passes::Run { cycles: 4, inputs: &write, native: false };
+        if let Err(found) = passes::agree(&program, plcc_mir::opt::passes(), &run) {
+            panic!("PLCC_SEED={seed}: {found}\n{}", plcc_mir::print::program(&program, None));
+        }
+    }
 }

@@ -34,15 +34,22 @@ pub struct Jit {
 }
 
 impl Jit {
+    /// For an application of one resource.
+    pub fn new(code: JitCode) -> Self {
+        Self::over(Arc::new(code))
+    }
+
+    fn over(code: Arc<JitCode>) -> Self {
+        let (init, scan) = code.entries();
+        // SAFETY: both come from one compiled program, and the code lives as long as any engine.
+        let engine = unsafe { NativeEngine::new(init, scan) };
+        Self { engine, _code: code }
+    }
+
     /// One for each resource, over the same code.
     pub fn engines(code: JitCode, resources: usize) -> Vec<Box<dyn Engine>> {
         let code = Arc::new(code);
-        let (init, scan) = code.entries();
-        let engine = |_| -> Box<dyn Engine> {
-            // SAFETY: both come from one compiled program, and the code lives as long as any engine.
-            let engine = unsafe { NativeEngine::new(init, scan) };
-            Box::new(Self { engine, _code: Arc::clone(&code) })
-        };
+        let engine = |_| -> Box<dyn Engine> { Box::new(Self::over(Arc::clone(&code))) };
         (0..resources).map(engine).collect()
     }
 }

@@ -74,8 +74,8 @@ struct Folder<'a> {
     tree: Dominators,
     replace: Replace,
     defs: Defs,
-    /// The places whose addresses values are.
-    addresses: FxHashMap<ValueId, Place>,
+    /// The places whose addresses values are, and how many bytes a reference to them reaches.
+    addresses: FxHashMap<ValueId, (Place, u32)>,
     /// Where an instruction was done, which value it gave, and when that was last used.
     seen: FxHashMap<Key, (BlockId, ValueId, u32)>,
     /// From which blocks on a truth value is known.
@@ -157,9 +157,9 @@ impl Folder<'_> {
                 let (dst, op, repr, args) = (*dst, *op, *repr, *args);
                 self.prim(dst, op, repr, args);
             }
-            Inst::AddressOf { dst, place, .. } => {
+            Inst::AddressOf { dst, place, bytes } => {
                 let (dst, key) = (*dst, Key::Address(place.clone()));
-                self.addresses.insert(dst, place.clone());
+                self.addresses.insert(dst, (place.clone(), *bytes));
                 self.once(dst, key, inst);
             }
             Inst::CallRt { dst, func, args } => {
@@ -271,7 +271,10 @@ impl Folder<'_> {
     /// Constant parts of a place move into its offset; the place at an address is the place itself.
     fn place(&self, place: &mut Place) {
         while let Base::Reference(value) = place.base {
-            let Some(target) = self.addresses.get(&value).filter(|p| p.bit.is_none()) else { break };
+            let Some((target, bytes)) = self.addresses.get(&value) else { break };
+            if !within(place, i64::from(*bytes)) {
+                break;
+            }
             place.base = target.base;
             place.offset += target.offset;
             let inner = std::mem::replace(&mut place.index, target.index.clone());
@@ -332,4 +335,19 @@ impl Folder<'_> {
             other => other,
         }
     }
+}
+
+/// Whether a place behind a reference begins in the bytes that the reference reaches. The bounds of an array that is open
+/// become those: its index was checked against the actual ones.
+fn within(place: &mut Place, bytes: i64) -> bool {
+    if let [term] = &mut place.index[..]
+        && term.low == 0
+        && term.stride > 0
+        && place.offset >= 0
+        && place.offset < bytes
+    {
+        term.high = term.high.min((bytes - 1 - place.offset) / i64::from(term.stride));
+    }
+    let (start, end) = super::alias::span(place, 0);
+    start >= 0 && end <= bytes
 }

@@ -7,10 +7,21 @@
 //! The order is a table, [`passes`]; the tests run the interpreter after each of its rows.
 
 mod algebra;
+mod alias;
 mod clean;
+mod dead_stores;
 mod fold;
+mod forward;
+mod frames;
+mod hoist;
 mod inline;
+mod loops;
+mod promote;
+mod proven;
 mod rewrite;
+mod scale;
+mod select;
+mod ssa;
 
 use crate::ir::{Func, Program};
 
@@ -31,7 +42,24 @@ impl std::fmt::Debug for Pass {
 
 /// The passes in their order; a pass may come more than once.
 pub fn passes() -> &'static [Pass] {
-    &[Pass { name: "tidy", run: |p| each(p, tidy) }, Pass { name: "inline", run: |p| inline::run(p, tidy) }]
+    const TIDY: Pass = Pass { name: "tidy", run: |p| each(p, tidy) };
+    const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
+    const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
+    const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
+    const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
+    const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
+    const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
+    #[rustfmt::skip]
+    const PASSES: &[Pass] = &[
+        TIDY,
+        Pass { name: "inline", run: |p| inline::run(p, tidy) },
+        FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
+        SELECT, TIDY, FORWARD, DEAD_STORES, TIDY,
+        PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        SELECT, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
+    ];
+    PASSES
 }
 
 /// Runs all passes.
@@ -53,6 +81,15 @@ fn tidy(func: &mut Func) {
     clean::run(func);
     fold::run(func);
     clean::run(func);
+}
+
+/// A pass over functions that asks what may be the same memory.
+fn with_facts(program: &mut Program, run: fn(&mut Func, &alias::Alias)) {
+    let facts = alias::Facts::new(program);
+    for (id, func) in program.funcs.iter_mut().enumerate() {
+        let alias = alias::Alias::new(&facts, crate::ir::FuncId::from_usize(id), func);
+        run(func, &alias);
+    }
 }
 
 /// A pass over functions that needs to know nothing of the others.

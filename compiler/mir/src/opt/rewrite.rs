@@ -77,33 +77,24 @@ pub fn is_pure(inst: &Inst) -> bool {
     )
 }
 
-/// The instruction that defines each value; `None` for parameters of blocks.
-pub struct Definitions<'a>(IndexVec<ValueId, Option<&'a Inst>>);
+/// The register values of those values that are constants.
+pub struct Constants(IndexVec<ValueId, Option<u64>>);
 
-impl<'a> Definitions<'a> {
-    /// Of all values.
-    pub fn new(func: &'a Func) -> Self {
-        let mut defs = IndexVec::from_vec(vec![None; func.values.len()]);
+impl Constants {
+    /// Of a function as it is now.
+    pub fn new(func: &Func) -> Self {
+        let mut raws = IndexVec::from_vec(vec![None; func.values.len()]);
         for inst in func.blocks.iter().flat_map(|b| &b.insts) {
-            let (first, second) = inst.results();
-            for value in first.into_iter().chain(second) {
-                defs[value] = Some(inst);
+            if let Inst::Const { dst, raw } = inst {
+                raws[*dst] = Some(*raw);
             }
         }
-        Self(defs)
+        Self(raws)
     }
 
-    /// Of one value.
-    pub fn get(&self, value: ValueId) -> Option<&'a Inst> {
+    /// The register value, if it is one.
+    pub fn get(&self, value: ValueId) -> Option<u64> {
         self.0.get(value).copied().flatten()
-    }
-
-    /// The register value of a constant.
-    pub fn constant(&self, value: ValueId) -> Option<u64> {
-        match self.get(value) {
-            Some(Inst::Const { raw, .. }) => Some(*raw),
-            _ => None,
-        }
     }
 }
 

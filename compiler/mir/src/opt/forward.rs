@@ -1,0 +1,99 @@
+//! A load of what was stored or loaded before is that value.
+//!
+//! Along every way the places are remembered whose value is known, the latest ones only: a value that is kept long costs a
+//! register, and its memory is never far. Where ways meet, what all of them know stays. Loops begin with nothing.
+//!
+//! ```text
+//! store i8 t.IN := v0
+//! v1 = load i8 t.IN          =>    store i8 t.IN := v0
+//! if v1 then b1 else b2            if v0 then b1 else b2
+//! ```
+
+use super::alias::Alias;
+use super::rewrite::{Constants, Replace};
+use crate::dominators::Dominators;
+use crate::ir::{BlockId, Func, Inst, Place, ValueId};
+use index_vec::IndexVec;
+use plcc_stdlib::prim::Repr;
+
+/// So many places are remembered at once.
+const KNOWN: usize = 40;
+
+/// A place whose value is known.
+#[derive(Debug, Clone, PartialEq)]
+struct Known {
+    place: Place,
+    repr: Repr,
+    value: ValueId,
+    /// The value is a truth value, also where memory may hold any byte.
+    truth: bool,
+}
+
+/// The pass.
+pub fn run(func: &mut Func, alias: &Alias) {
+    let tree = Dominators::new(func);
+    let constants = Constants::new(func);
+    let mut replace = Replace::new(func);
+    let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
+    for &block in &tree.order {
+        let mut known = start(&tree.preds[block], &ends);
+        let insts = std::mem::take(&mut func.blocks[block].insts);
+        let mut out = Vec::with_capacity(insts.len());
+        for mut inst in insts {
+            replace.inst(&mut inst);
+            if let Inst::Load { dst, place, normalise } = &inst {
+                let repr = func.values[*dst];
+                let found = known.iter().position(|k| k.place == *place && k.repr == repr && (k.truth || !normalise));
+                if let Some(n) = found {
+                    let one = known.remove(n);
+                    replace.set(*dst, one.value);
+                    known.push(one);
+                    continue;
+                }
+            }
+            forget(func, alias, &constants, &inst, &mut known);
+            match &inst {
+                Inst::Load { dst, place, normalise } => {
+                    let truth = *normalise || place.bit.is_some();
+                    known.push(Known { place: place.clone(), repr: func.values[*dst], value: *dst, truth });
+                }
+                Inst::Store { place, value } => {
+                    // What is stored as a truth value is one; other bytes are not normalised when they are read back.
+                    let truth = place.bit.is_some();
+                    known.push(Known { place: place.clone(), repr: func.values[*value], value: *value, truth });
+                }
+                _ => {}
+            }
+            if known.len() > KNOWN {
+                known.remove(0);
+            }
+            out.push(inst);
+        }
+        func.blocks[block].insts = out;
+        ends[block] = Some(known);
+    }
+    replace.apply(func);
+}
+
+/// What is known at the start of a block.
+fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec<Known> {
+    let Some((first, rest)) = preds.split_first() else { return Vec::new() };
+    let Some(mut known) = ends[*first].clone() else { return Vec::new() };
+    for pred in rest {
+        match &ends[*pred] {
+            Some(other) => known.retain(|k| other.contains(k)),
+            None => return Vec::new(),
+        }
+    }
+    known
+}
+
+/// Forgets what an instruction may change.
+fn forget(func: &Func, alias: &Alias, constants: &Constants, inst: &Inst, known: &mut Vec<Known>) {
+    if matches!(
+        inst,
+        Inst::Store { .. } | Inst::Copy { .. } | Inst::Zero { .. } | Inst::Call { .. } | Inst::CallText { .. }
+    ) {
+        known.retain(|k| !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes())));
+    }
+}

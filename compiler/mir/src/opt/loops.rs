@@ -1,0 +1,126 @@
+//! Natural loops, with a block in front of each and one on every way out.
+//!
+//! A loop is a header that dominates the ends of its back-edges, and all blocks on the ways between. Circles with two
+//! entries are no loops; passes leave them alone.
+
+use super::rewrite::to;
+use crate::dominators::Dominators;
+use crate::ir::{Block, BlockId, Func, Target, Term};
+use crate::visit;
+use index_vec::IndexVec;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// A loop.
+#[derive(Debug, Clone)]
+pub struct Loop {
+    /// Where it is entered.
+    pub header: BlockId,
+    /// Its blocks in reverse post-order, the header first.
+    pub blocks: Vec<BlockId>,
+    /// The block in front, which only jumps to the header.
+    pub preheader: BlockId,
+    /// Where ways out arrive; each comes from one block of the loop.
+    pub exits: Vec<BlockId>,
+    /// How many loops are around it.
+    pub depth: usize,
+}
+
+/// The loops of a function, inner ones before outer ones. Adds the blocks in front and on the ways out.
+pub fn find(func: &mut Func) -> Vec<Loop> {
+    let bodies = bodies(func, &Dominators::new(func));
+    if bodies.is_empty() {
+        return Vec::new();
+    }
+    for (header, body) in &bodies {
+        add_preheader(func, *header, body);
+    }
+    for (_, body) in &bodies {
+        split_exits(func, body);
+    }
+    // Blocks that were added may belong to outer loops.
+    let tree = Dominators::new(func);
+    let bodies = self::bodies(func, &tree);
+    let mut position: IndexVec<BlockId, usize> = IndexVec::from_vec(vec![0; func.blocks.len()]);
+    tree.order.iter().enumerate().for_each(|(n, block)| position[*block] = n);
+    let mut depth: FxHashMap<BlockId, usize> = FxHashMap::default();
+    for (_, body) in &bodies {
+        body.iter().for_each(|block| *depth.entry(*block).or_default() += 1);
+    }
+    let mut loops: Vec<Loop> = bodies
+        .into_iter()
+        .filter_map(|(header, body)| {
+            let mut blocks: Vec<BlockId> = body.iter().copied().collect();
+            blocks.sort_by_key(|block| position[*block]);
+            let outside = tree.preds[header].iter().copied().find(|pred| !body.contains(pred));
+            let mut exits = Vec::new();
+            for block in &blocks {
+                func.blocks[*block].term.for_each_target(|target| {
+                    if !body.contains(&target.block) {
+                        exits.push(target.block);
+                    }
+                });
+            }
+            // The entry of the function has no block in front.
+            Some(Loop { header, depth: depth[&header] - 1, blocks, preheader: outside?, exits })
+        })
+        .collect();
+    loops.sort_by_key(|l| (std::cmp::Reverse(l.depth), position[l.header]));
+    loops
+}
+
+/// Headers and blocks of all loops.
+fn bodies(func: &Func, tree: &Dominators) -> Vec<(BlockId, FxHashSet<BlockId>)> {
+    let mut list: Vec<(BlockId, FxHashSet<BlockId>)> = Vec::new();
+    for &header in &tree.order {
+        if header.index() == 0 {
+            continue;
+        }
+        let ends: Vec<BlockId> =
+            tree.preds[header].iter().copied().filter(|pred| tree.dominates(header, *pred)).collect();
+        if ends.is_empty() {
+            continue;
+        }
+        let mut body: FxHashSet<BlockId> = FxHashSet::default();
+        body.insert(header);
+        let mut work = ends;
+        while let Some(block) = work.pop() {
+            if body.insert(block) {
+                work.extend(tree.preds[block].iter().copied());
+            }
+        }
+        list.push((header, body));
+    }
+    let _ = func;
+    list
+}
+
+fn add_preheader(func: &mut Func, header: BlockId, body: &FxHashSet<BlockId>) {
+    let params: Vec<_> = func.blocks[header].params.iter().map(|v| func.values[*v]).collect();
+    let params: Vec<_> = params.into_iter().map(|repr| func.values.push(repr)).collect();
+    let term = Term::Jump(Target { block: header, args: params.clone() });
+    let front = func.blocks.push(Block { params, insts: Vec::new(), term });
+    for id in (0..front.index()).map(BlockId::from_usize).filter(|id| !body.contains(id)) {
+        visit::targets(&mut func.blocks[id].term, &mut |target| {
+            if target.block == header {
+                target.block = front;
+            }
+        });
+    }
+}
+
+/// Puts a block on every way out.
+fn split_exits(func: &mut Func, body: &FxHashSet<BlockId>) {
+    let mut blocks: Vec<BlockId> = body.iter().copied().collect();
+    blocks.sort_unstable();
+    for id in blocks {
+        let mut term = std::mem::replace(&mut func.blocks[id].term, Term::Return(None));
+        visit::targets(&mut term, &mut |target| {
+            if !body.contains(&target.block) {
+                let onward = std::mem::replace(target, to(BlockId::from_raw(0)));
+                let block = Block { params: Vec::new(), insts: Vec::new(), term: Term::Jump(onward) };
+                *target = to(func.blocks.push(block));
+            }
+        });
+        func.blocks[id].term = term;
+    }
+}
