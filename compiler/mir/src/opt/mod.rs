@@ -17,6 +17,7 @@ mod hoist;
 mod inline;
 mod loops;
 mod promote;
+mod ranges;
 mod rewrite;
 mod ssa;
 
@@ -45,6 +46,7 @@ pub fn passes() -> &'static [Pass] {
     const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
     const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
+    const RANGES: Pass = Pass { name: "ranges", run: |p| each(p, ranges::run) };
     &[
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
@@ -52,9 +54,15 @@ pub fn passes() -> &'static [Pass] {
         TIDY,
         FORWARD,
         TIDY,
+        RANGES,
+        TIDY,
         DEAD_STORES,
         TIDY,
         PROMOTE,
+        TIDY,
+        FORWARD,
+        TIDY,
+        RANGES,
         TIDY,
         HOIST,
         TIDY,
