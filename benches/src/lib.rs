@@ -1,1 +1,12 @@
-//! Benchmarks of plcc; see `cycle_time.rs` and `charts.rs`. Run with `cargo bench`.
+//! Benchmarks of plcc: the programs with their C references, what feeds and compares them, and the report. Run with
+//! `cargo bench`; see `report.rs`.
+
+pub mod charts;
+pub mod count;
+pub mod interface;
+pub mod lanes;
+pub mod programs;
+pub mod reference;
+pub mod stimulus;
+pub mod svg;
+pub mod targets;

@@ -6,10 +6,10 @@
 
 mod charts;
 pub mod cli;
-mod clock;
+pub mod clock;
 pub mod engine;
 pub mod entry;
-mod fault;
+pub mod fault;
 pub mod image;
 pub mod path;
 mod process_image;
@@ -18,8 +18,8 @@ pub mod run;
 mod scan;
 mod signals;
 mod stats;
-mod stimulus;
-mod task;
+pub mod stimulus;
+pub mod task;
 mod trace;
 mod vcd;
-mod watchdog;
+pub mod watchdog;

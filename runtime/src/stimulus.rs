@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// One value to write.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Write {
     offset: u32,
     bit: Option<u8>,
@@ -13,7 +13,7 @@ struct Write {
 }
 
 /// All rows, in order of their cycles.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Stimulus {
     rows: Vec<(u64, Vec<Write>)>,
     next: usize,
@@ -102,6 +102,11 @@ impl Stimulus {
             rows.push((cycle, writes));
         }
         Ok(Self { rows, next: 0 })
+    }
+
+    /// Back to the first row.
+    pub fn rewind(&mut self) {
+        self.next = 0;
     }
 
     /// Writes the values of a cycle.

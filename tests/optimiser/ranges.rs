@@ -46,6 +46,8 @@ const BODIES: &[(&str, usize)] = &[
     ("w := w XOR 16#35; a[SHR(w, 5)] := 1;", 0),
     ("x := x + 1; a[LIMIT(0, x, 9)] := 1;", 0),
     ("x := x + 1; a[MAX(MIN(x, 9), 0)] := 1;", 0),
+    ("x := x + 1; IF x > 9 OR x < 0 THEN x := 0; END_IF; a[x] := 5;", 0),
+    ("x := x + 1; IF x > 9 THEN x := 0; END_IF; IF x >= 0 THEN a[x] := 5; END_IF;", 0),
     ("x := x + 1; CASE x OF 1: b[x] := 4; 2..5: b[x + 1] := 9; 7, 8: b[x] := 2; END_CASE;", 0),
     ("x := x + 1; IF x = 3 THEN a[x] := 1; END_IF;", 0),
     ("w := w XOR 16#35; a[BOOL_TO_INT(w.3)] := 1;", 0),

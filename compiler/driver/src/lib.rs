@@ -1,6 +1,7 @@
 //! The driver: command line, project file, pipeline, rendering, linking. Among the compiler's crates only this one reads
 //! files, prints, or ends the process.
 
+pub mod bench;
 mod build;
 pub mod cli;
 mod engines;
@@ -11,6 +12,7 @@ mod image;
 mod link;
 mod new;
 mod pipeline;
+mod places;
 mod project;
 mod render;
 

@@ -38,11 +38,22 @@ impl Drop for Scratch {
 ///
 /// The output appears whole or not at all.
 pub fn executable(object: &[u8], runtime: Option<&Path>, output: &Path) -> Result<(), Failure> {
+    whole(output, |partial| link_to(object, runtime, &[], partial))
+}
+
+/// Links an object with the entry points alone and what it needs of the runtime to a shared object.
+///
+/// The output appears whole or not at all.
+pub fn shared(object: &[u8], output: &Path) -> Result<(), Failure> {
+    whole(output, |partial| link_to(object, None, &["-shared"], partial))
+}
+
+fn whole(output: &Path, link: impl FnOnce(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
     // What cannot be written is said before the linker says it in its own words.
     let partial = partial_name(output);
     std::fs::write(&partial, b"").map_err(|e| Failure::io("write", output, e))?;
-    let result = link_to(object, runtime, &partial)
-        .and_then(|()| std::fs::rename(&partial, output).map_err(|e| Failure::io("write", output, e)));
+    let result =
+        link(&partial).and_then(|()| std::fs::rename(&partial, output).map_err(|e| Failure::io("write", output, e)));
     if result.is_err() {
         let _ = std::fs::remove_file(&partial);
     }
@@ -54,7 +65,7 @@ fn partial_name(output: &Path) -> PathBuf {
     output.with_file_name(format!(".{name}.{}.partial", std::process::id()))
 }
 
-fn link_to(object: &[u8], runtime: Option<&Path>, output: &Path) -> Result<(), Failure> {
+fn link_to(object: &[u8], runtime: Option<&Path>, flags: &[&str], output: &Path) -> Result<(), Failure> {
     let scratch = Scratch::new()?;
     let object_path = scratch.0.join("app.o");
     std::fs::write(&object_path, object).map_err(|e| Failure::io("write", &object_path, e))?;
@@ -70,6 +81,7 @@ fn link_to(object: &[u8], runtime: Option<&Path>, output: &Path) -> Result<(), F
     let done = Command::new(&linker)
         .arg(&object_path)
         .arg(&archive)
+        .args(flags)
         .args(["-Wl,--gc-sections", "-Wl,--strip-debug", "-lm", "-lpthread", "-ldl", "-o"])
         .arg(output)
         .output();

@@ -233,7 +233,8 @@ impl<'a> Caller<'a> {
         let Ok(start) = u32::try_from(place.offset) else { return };
         let names = &self.func.names;
         let own = names.binary_search_by_key(&(place.base, start), |(base, at, _)| (*base, *at));
-        let Some(own) = own.ok().map(|n| names[n].2.clone()) else { return };
+        // A task has no name for its programs; they have.
+        let own = own.ok().map_or_else(|| callee.name.clone(), |n| names[n].2.clone());
         let inner = callee.names.iter().filter(|(base, ..)| *base == Base::Instance);
         let inner: Vec<_> = inner.map(|(_, at, name)| (place.base, start + at, format!("{own}.{name}"))).collect();
         self.names.extend(inner);

@@ -1,0 +1,99 @@
+//! Inputs that change from cycle to cycle: the same in every run, with transients and with reals that are not exact.
+
+use crate::interface::{Kind, Leaf};
+use plcc_stdlib::elem::Elem;
+
+/// How an input moves. Each element of an array moves on its own.
+#[derive(Debug, Clone, Copy)]
+pub enum Signal {
+    /// A BOOL that changes with this probability a cycle.
+    Flips(f64),
+    /// A BOOL that is TRUE with this probability.
+    Pulses(f64),
+    /// A number that is another one in every cycle.
+    Noise(f64, f64),
+    /// A number that wanders between two bounds by at most the third a cycle.
+    Walk(f64, f64, f64),
+    /// A number that jumps somewhere between two bounds with a probability of the third a cycle.
+    Jumps(f64, f64, f64),
+    /// One of some texts, another one with a probability a cycle.
+    Texts(&'static [&'static str], f64),
+}
+
+/// One input in motion.
+#[derive(Debug, Clone)]
+struct Moving {
+    signal: Signal,
+    kind: Kind,
+    value: f64,
+    text: &'static str,
+}
+
+/// The inputs of a program.
+pub struct Stimulus {
+    random: fastrand::Rng,
+    inputs: Vec<Moving>,
+}
+
+impl Stimulus {
+    /// For the leaves of a program's inputs; `signals` names variables.
+    pub fn new(leaves: &[Leaf], signals: &[(&str, Signal)]) -> Self {
+        let mut random = fastrand::Rng::with_seed(61131);
+        let moving = |leaf: &Leaf| {
+            let name = leaf.variable.rsplit('.').next().unwrap_or_default();
+            let found = signals.iter().find(|(n, _)| n.eq_ignore_ascii_case(name));
+            let signal = found.unwrap_or_else(|| panic!("no signal for the input {name}")).1;
+            let value = match signal {
+                Signal::Flips(_) => f64::from(u8::from(random.bool())),
+                Signal::Pulses(_) => 0.0,
+                Signal::Noise(low, high) | Signal::Walk(low, high, _) | Signal::Jumps(low, high, _) => {
+                    low + random.f64() * (high - low)
+                }
+                Signal::Texts(..) => 0.0,
+            };
+            let text = if let Signal::Texts(texts, _) = signal { texts[0] } else { "" };
+            Moving { signal, kind: leaf.kind, value, text }
+        };
+        let inputs = leaves.iter().map(moving).collect();
+        Self { random, inputs }
+    }
+
+    /// The values of the next cycle, by leaf, in the bytes of memory.
+    pub fn cycle(&mut self) -> Vec<Vec<u8>> {
+        let Self { random, inputs } = self;
+        inputs
+            .iter_mut()
+            .map(|input| {
+                let p = random.f64();
+                match input.signal {
+                    Signal::Flips(share) if p < share => input.value = 1.0 - input.value,
+                    Signal::Pulses(share) => input.value = f64::from(u8::from(p < share)),
+                    Signal::Noise(low, high) => input.value = low + p * (high - low),
+                    Signal::Walk(low, high, step) => {
+                        input.value = (input.value + (2.0 * p - 1.0) * step).clamp(low, high);
+                    }
+                    Signal::Jumps(low, high, share) if p < share => input.value = low + random.f64() * (high - low),
+                    Signal::Texts(texts, share) if p < share => input.text = texts[random.usize(..texts.len())],
+                    _ => {}
+                }
+                input.bytes()
+            })
+            .collect()
+    }
+}
+
+impl Moving {
+    fn bytes(&self) -> Vec<u8> {
+        match self.kind {
+            Kind::Text(capacity) => {
+                let mut bytes = self.text.as_bytes().to_vec();
+                assert!(bytes.len() <= capacity, "`{}` is too long", self.text);
+                bytes.resize(capacity + 1, 0);
+                bytes
+            }
+            Kind::Elem(Elem::Real) => (self.value as f32).to_le_bytes().to_vec(),
+            Kind::Elem(Elem::Lreal) => self.value.to_le_bytes().to_vec(),
+            Kind::Elem(elem) => (self.value.floor() as i64).to_le_bytes()[..elem.bytes() as usize].to_vec(),
+        }
+    }
+}
