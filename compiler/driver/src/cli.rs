@@ -281,7 +281,7 @@ pub struct GraphArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub sources: SourceArgs,
-    /// Draw the Sequential Function Charts.
+    /// Draw only the Sequential Function Charts, also those of texts.
     #[arg(long)]
     pub sfc: bool,
     /// Only the chart of this POU, with those of its actions, or of one action (POU.ACTION).

@@ -42,6 +42,26 @@ pub fn item(item: &Item, texts: &dyn Texts) -> String {
     w.out
 }
 
+/// An expression on one line.
+pub fn expression(e: &Expr) -> String {
+    struct Plain;
+    impl Texts for Plain {
+        fn name(&self, name: &str) -> String {
+            name.to_string()
+        }
+        fn inferred(&self, _: &Name) -> String {
+            String::new()
+        }
+        fn written(&self, _: Span, _: &Body) -> Option<String> {
+            None
+        }
+        fn remarks(&self, _: Span) -> Vec<String> {
+            Vec::new()
+        }
+    }
+    Writer { texts: &Plain, out: String::new(), indent: 0 }.expr(e)
+}
+
 struct Writer<'t> {
     texts: &'t dyn Texts,
     out: String,
