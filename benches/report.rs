@@ -1,7 +1,8 @@
 //! All programs in all lanes, in one run, to a report below `target/bench-report` (Markdown, JSON, SVG).
 //!
-//! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a tenth of the
-//! time. `cargo test` runs them for some cycles: every lane must give the same outputs after each cycle.
+//! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a third of the
+//! time, `--brief` prints medians of a few lanes at once and writes no report. `cargo test` runs all programs for some cycles:
+//! every lane must give the same outputs after each cycle.
 
 use plcc::bench::measure::{Plan, measure};
 use plcc::bench::report::{LaneAbout, LaneReport, ProgramReport, Report, figure, two, whole};
@@ -25,6 +26,9 @@ fn main() -> ExitCode {
     let folder = tempfile::tempdir().expect("a folder for what the C compiler makes");
     let result = if has(COUNT) {
         chosen.iter().try_for_each(|program| counted(program, folder.path()))
+    } else if has("--brief") {
+        println!("median cycle, ns: program, then each lane and its ratio to C -O2");
+        chosen.iter().try_for_each(|program| brief(program, folder.path()))
     } else if has("--bench") {
         let plan = if has("--quick") { Plan::QUICK } else { Plan::FULL };
         write_report(&chosen, &charts(&names), &plan, folder.path())
@@ -63,6 +67,23 @@ fn check(program: &Program, folder: &Path) -> Result<(), String> {
     let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
     let measured = measure(&mut running, &Plan::SMOKE, Scale::calibrate()).map_err(|f| named(format!("{f:?}")))?;
     assert_eq!(measured.times.len(), count);
+    Ok(())
+}
+
+/// Medians of a few lanes, a line a program: what one looks at while working on the compiler.
+fn brief(program: &Program, folder: &Path) -> Result<(), String> {
+    let named = |e: String| format!("{}: {e}", program.name);
+    let mut lanes = Lanes::new(program, Choice::Few { linked: false }, 400, folder).map_err(named)?;
+    lanes.compare(400).map_err(named)?;
+    let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
+    let plan = Plan { samples: 100, sample_ns: 10_000.0, cycles: 400, repeats: 1 };
+    let measured = measure(&mut running, &plan, Scale::calibrate()).map_err(|f| named(format!("{f:?}")))?;
+    let reports = running.iter().zip(&measured.times).map(|(lane, times)| LaneReport::new(lane.name, times));
+    let medians: Vec<(&str, f64)> =
+        reports.map(|lane| (lane.name, figure::median(&lane).unwrap_or(f64::NAN))).collect();
+    let base = medians.iter().find(|(name, _)| *name == reference::O2.lane).map_or(f64::NAN, |(_, ns)| *ns);
+    let cells = medians.iter().map(|(name, ns)| format!("{name} {ns:.1} ({:.2})", ns / base));
+    println!("{:10} {}", program.name, cells.collect::<Vec<_>>().join(", "));
     Ok(())
 }
 
@@ -118,9 +139,10 @@ fn write_report(programs: &[&Program], charts: &[Chart], plan: &Plan, folder: &P
     report.machine.push(plcc::bench::load("after"));
     eprintln!("instructions");
     let names = programs.iter().map(|p| p.name);
-    match count::count(&std::iter::once(COUNT).chain(names).collect::<Vec<_>>(), folder)? {
-        Some(counts) => count::add(&mut report, &counts),
-        None => report.machine.push("there is no valgrind for this machine: instructions were not counted".into()),
+    match count::count(&std::iter::once(COUNT).chain(names).collect::<Vec<_>>(), folder) {
+        Ok(Some(counts)) => count::add(&mut report, &counts),
+        Ok(None) => report.machine.push("there is no valgrind for this machine: instructions were not counted".into()),
+        Err(e) => report.machine.push(format!("instructions were not counted: {e}")),
     }
     let out = out_folder();
     let text = markdown(&report, &charts);

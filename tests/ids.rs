@@ -17,7 +17,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
 const NOT_BUILT: &[(&str, &str)] = &[
     // Several RESOURCEs.
     ("C3", "issue 7"),
-    ("X1", "the issue of PLCopen XML"),
 ];
 
 /// Ids in a text, `[T1]`.
@@ -58,7 +57,7 @@ fn named(folder: &Path, extensions: &[&str], lines: usize, out: &mut BTreeMap<St
 
 fn cases() -> BTreeMap<String, String> {
     let mut out = BTreeMap::new();
-    named(&root().join("cases"), &["st", "il", "sfc"], FIRST_LINES, &mut out);
+    named(&root().join("cases"), &["st", "il", "sfc", "xml"], FIRST_LINES, &mut out);
     out
 }
 

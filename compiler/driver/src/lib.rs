@@ -12,6 +12,7 @@ mod image;
 mod link;
 mod new;
 mod pipeline;
+mod places;
 mod project;
 mod render;
 

@@ -1,7 +1,6 @@
 //! What is the same in every pass of a loop is calculated before it.
 //!
-//! Operations on values from outside; loads at fixed places that nothing in the loop writes. A load with an index or
-//! through a reference stays: the check that makes it safe may stand in the loop. Not more than some values leave a loop:
+//! Operations on values from outside; loads that nothing in the loop writes, where they are safe before it ([`Proven`]). Not more than some values leave a loop:
 //! each takes a register through all of it.
 //!
 //! ```text
@@ -12,8 +11,10 @@
 
 use super::alias::Alias;
 use super::loops;
+use super::proven::Proven;
 use super::rewrite::Constants;
-use crate::ir::{Base, Func, Inst, ValueId};
+use crate::dominators::Dominators;
+use crate::ir::{Func, Inst, ValueId};
 use rustc_hash::FxHashSet;
 
 /// So many values leave a loop, constants not counted.
@@ -25,6 +26,8 @@ const LARGE: usize = 3_000;
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
     let loops = loops::find(func);
+    let tree = Dominators::new(func);
+    let proven = Proven::new(func);
     for l in &loops {
         let constants = Constants::new(func);
         let size: usize = l.blocks.iter().map(|b| func.blocks[*b].insts.len()).sum();
@@ -65,7 +68,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
                         Inst::Prim { .. } => true,
                         Inst::Load { dst, place, .. } => {
                             let bytes = i64::from(func.values[*dst].bytes());
-                            let safe = place.index.is_empty() && !matches!(place.base, Base::Reference(_));
+                            let safe = proven.is_safe(place, l.preheader, &tree);
                             safe && !writers.iter().any(|w| alias.may_write(func, &constants, w, place, bytes))
                         }
                         _ => false,

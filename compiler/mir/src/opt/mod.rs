@@ -6,6 +6,7 @@
 //!
 //! The order is a table, [`passes`]; the tests run the interpreter after each of its rows.
 
+mod aggregates;
 mod algebra;
 mod alias;
 mod clean;
@@ -17,7 +18,9 @@ mod hoist;
 mod inline;
 mod loops;
 mod promote;
+mod proven;
 mod rewrite;
+mod scale;
 mod select;
 mod ssa;
 
@@ -51,9 +54,12 @@ pub fn passes() -> &'static [Pass] {
     const PASSES: &[Pass] = &[
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
+        Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
         FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
-        SELECT, TIDY, FORWARD, DEAD_STORES, TIDY,
+        SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
         PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        SELECT, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
     ];
     PASSES
 }

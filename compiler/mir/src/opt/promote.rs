@@ -1,6 +1,6 @@
 //! Variables that a loop reads and writes are values inside it and memory again behind it.
 //!
-//! A scalar at a fixed place, which nothing else in the loop touches, is read once before the loop and written once on
+//! A scalar whose place is the same in every pass, which nothing else in the loop touches, is read once before the loop and written once on
 //! every way out. Checks and polls inside owe it, so that a fault finds the memory of the statement order. Inner loops
 //! come first; what they leave in the loop around them is promoted there.
 //!
@@ -14,10 +14,11 @@
 
 use super::alias::{Alias, for_each_access};
 use super::loops::{self, Loop};
+use super::proven::Proven;
 use super::rewrite::Constants;
 use super::ssa::{Scope, Var, rewrite};
 use crate::dominators::Dominators;
-use crate::ir::{Base, Func, Inst, Place, Term};
+use crate::ir::{Func, Inst, Place, Term};
 use plcc_stdlib::prim::Repr;
 use rustc_hash::FxHashMap;
 
@@ -42,8 +43,10 @@ struct Used {
 pub fn run(func: &mut Func, alias: &Alias) {
     let loops = loops::find(func);
     let tree = Dominators::new(func);
+    let proven = Proven::new(func);
     for l in &loops {
-        let vars = choose(func, alias, l);
+        let safe = |place: &Place| proven.is_safe(place, l.preheader, &tree);
+        let vars = choose(func, alias, l, &safe);
         if vars.is_empty() {
             continue;
         }
@@ -73,7 +76,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
 }
 
 /// The places of a loop that become values.
-fn choose(func: &Func, alias: &Alias, l: &Loop) -> Vec<Var> {
+fn choose(func: &Func, alias: &Alias, l: &Loop, safe: &impl Fn(&Place) -> bool) -> Vec<Var> {
     let insts = || l.blocks.iter().flat_map(|block| &func.blocks[*block].insts);
     if insts().count() > LARGE {
         return Vec::new();
@@ -87,7 +90,7 @@ fn choose(func: &Func, alias: &Alias, l: &Loop) -> Vec<Var> {
             Inst::Store { place, value } => (place, func.values[*value], true, true),
             _ => continue,
         };
-        if !place.index.is_empty() || place.bit.is_some() || matches!(place.base, Base::Reference(_)) {
+        if place.bit.is_some() || !safe(place) {
             continue;
         }
         let order = used.len();

@@ -1,6 +1,6 @@
 //! Short branches become selections: both arms are calculated, and what they assign is chosen.
 //!
-//! An arm qualifies if it is short, can neither fault nor take long, and assigns a few integers at fixed places or values.
+//! An arm qualifies if it is short, can neither fault nor take long, and assigns a few integers at places that are safe to access there ([`Proven`]), or values.
 //! The time of such code does not depend on its inputs, and a branch that is missed costs more than the arm. A place that
 //! only one arm assigns is read first and written back: no one else sees that. Reals are left to branches, which is what
 //! the machine makes of their selection anyway.
@@ -13,7 +13,9 @@
 //! ```
 
 use super::alias::Alias;
-use crate::ir::{Args, Base, BlockId, Func, Inst, Place, Target, Term, ValueId};
+use super::proven::Proven;
+use crate::dominators::Dominators;
+use crate::ir::{Args, BlockId, Func, Inst, Place, Target, Term, ValueId};
 use index_vec::IndexVec;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use rustc_hash::FxHashMap;
@@ -36,9 +38,11 @@ pub fn run(func: &mut Func, alias: &Alias) {
         for block in &func.blocks {
             block.term.for_each_target(|target| ways[target.block] += 1);
         }
+        let (tree, proven) = (Dominators::new(func), Proven::new(func));
+        let safe = |place: &Place, at: BlockId| proven.is_safe(place, at, &tree);
         let mut changed = false;
         for id in (0..func.blocks.len()).rev().map(BlockId::from_usize) {
-            if let Some(plan) = plan(func, alias, &ways, id) {
+            if let Some(plan) = plan(func, alias, &ways, &safe, id) {
                 apply(func, id, plan);
                 changed = true;
             }
@@ -64,7 +68,13 @@ struct Plan {
     stores: Vec<(Place, Repr, [Option<ValueId>; 2])>,
 }
 
-fn plan(func: &Func, alias: &Alias, ways: &IndexVec<BlockId, u32>, id: BlockId) -> Option<Plan> {
+fn plan(
+    func: &Func,
+    alias: &Alias,
+    ways: &IndexVec<BlockId, u32>,
+    safe: &impl Fn(&Place, BlockId) -> bool,
+    id: BlockId,
+) -> Option<Plan> {
     let Term::Branch { cond, then, otherwise } = &func.blocks[id].term else { return None };
     let through = |target: &Target| -> Option<Target> {
         let block = &func.blocks[target.block];
@@ -102,14 +112,14 @@ fn plan(func: &Func, alias: &Alias, ways: &IndexVec<BlockId, u32>, id: BlockId) 
             match inst {
                 Inst::Const { .. } => {}
                 Inst::Prim { op, .. } if is_cheap(*op) => cost += 1,
-                Inst::Load { dst, place, .. } if is_fixed(place) => {
+                Inst::Load { dst, place, .. } if safe(place, id) => {
                     let bytes = i64::from(func.values[*dst].bytes());
                     if assigned.iter().any(|(p, b)| alias.overlap(p, *b, place, bytes)) {
                         return None;
                     }
                     cost += 1;
                 }
-                Inst::Store { place, value } if is_fixed(place) && place.bit.is_none() => {
+                Inst::Store { place, value } if place.bit.is_none() && safe(place, id) => {
                     let repr = func.values[*value];
                     let bytes = i64::from(repr.bytes());
                     if !repr.is_int() {
@@ -139,6 +149,11 @@ fn plan(func: &Func, alias: &Alias, ways: &IndexVec<BlockId, u32>, id: BlockId) 
     let reals = chosen.iter().any(|v| !func.values[*v].is_int());
     // A place that one arm leaves alone is read and written back.
     let extra = stores.iter().filter(|(_, _, values)| values.contains(&None)).count();
+    // Where only one arm assigns, a branch around it costs little and no memory; it stays but for a single value that is
+    // there already.
+    if extra > 0 && (stores.len() > 1 || cost > 1) {
+        return None;
+    }
     if reals || stores.len() > STORES || stores.len() + chosen.len() > CHOICES || cost + extra > COST {
         return None;
     }
@@ -164,11 +179,6 @@ fn is_cheap(op: PrimOp) -> bool {
             | SToF(_)
             | UToF(_)
     )
-}
-
-/// Whether a load of it is safe wherever it stands.
-fn is_fixed(place: &Place) -> bool {
-    place.index.is_empty() && !matches!(place.base, Base::Reference(_))
 }
 
 fn apply(func: &mut Func, id: BlockId, plan: Plan) {
