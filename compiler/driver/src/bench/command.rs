@@ -170,9 +170,9 @@ struct Bench {
 impl Bench {
     fn new(front: &Front, args: &BenchArgs, folder: &Path) -> Result<Self, Failure> {
         let code = |opt| CodeArgs { checks: args.checks.clone(), opt: Some(opt) };
-        let speed = front.back(&code(OptArg::Speed))?;
-        let none = front.back(&code(OptArg::None))?;
-        let unchecked = front.back(&CodeArgs { checks: Some("none".into()), opt: Some(OptArg::Speed) })?;
+        let speed = front.back(&code(OptArg::Speed), false)?;
+        let none = front.back(&code(OptArg::None), false)?;
+        let unchecked = front.back(&CodeArgs { checks: Some("none".into()), opt: Some(OptArg::Speed) }, false)?;
         let image = speed.compiled.image.clone();
         let resolver = Resolver::new(&image);
         let stimulus = args.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose();
