@@ -110,6 +110,12 @@ impl Back {
         &self.compiled.image
     }
 
+    /// Whether some call catches the faults in it (EN/ENO).
+    pub fn catches_faults(&self) -> bool {
+        let insts = self.program().funcs.iter().flat_map(|f| &f.blocks).flat_map(|b| &b.insts);
+        insts.into_iter().any(|inst| matches!(inst, plcc_mir::ir::Inst::Call { status: Some(_), .. }))
+    }
+
     /// Bytes of its memory.
     pub fn region_bytes(&self) -> usize {
         self.compiled.program.region_bytes as usize
