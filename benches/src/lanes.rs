@@ -264,7 +264,7 @@ fn operations(back: &Back, rows: Rows, cycles: u64) -> f64 {
     let mut subject = OneTask::new(engine, back.region_bytes(), rows, INTERVAL_NS);
     subject.restart();
     assert_eq!(subject.run(0, cycles), 0, "a benchmark program faulted");
-    count.get() as f64 / cycles as f64
+    count.load(std::sync::atomic::Ordering::Relaxed) as f64 / cycles as f64
 }
 
 impl Prepared {

@@ -12,11 +12,12 @@ use plcc_diag::SourceMap;
 use plcc_hir::{Checked, Profile, Section};
 use plcc_mir::interp::Interp;
 use plcc_mir::ir::Program;
-use plcc_runtime::engine::{Engine, InitFn, NativeEngine, Region, ScanFn};
+use plcc_runtime::engine::{Engine, InitFn, NativeEngine, Part, Region, ScanFn};
 use plcc_runtime::image::Image;
-use std::cell::Cell;
+
 use std::path::Path;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// CPU time of this process, milliseconds.
 pub fn cpu_ms() -> f64 {
@@ -47,7 +48,8 @@ impl Front {
     pub fn new(texts: &[(&str, &str)], profile: Profile) -> Result<Self, String> {
         let mut sources = SourceMap::new();
         let ids: Vec<_> = texts.iter().map(|(name, text)| (sources.add(*name, *text), profile)).collect();
-        let project = Project { name: "bench".into(), ..Project::default() };
+        let mut project = Project::default();
+        project.name = "bench".into();
         let front = Self::check(sources, &ids, project);
         if front.parsed.diags.has_errors() {
             let list = front.parsed.diags.sorted();
@@ -127,9 +129,9 @@ impl Back {
     }
 
     /// The reference interpreter, which adds up how many operations it executes.
-    pub fn counting_interpreter(&self) -> (impl Engine + use<>, Rc<Cell<u64>>) {
-        let operations = Rc::new(Cell::new(0));
-        (Counting { interp: Interp::new(&self.compiled.program), operations: Rc::clone(&operations) }, operations)
+    pub fn counting_interpreter(&self) -> (impl Engine + use<>, Arc<AtomicU64>) {
+        let operations = Arc::new(AtomicU64::new(0));
+        (Counting { interp: Interp::new(&self.compiled.program), operations: Arc::clone(&operations) }, operations)
     }
 
     /// CPU milliseconds of each pass of the optimiser over a program of the plain lowering, in the order of their first run.
@@ -168,16 +170,16 @@ impl Back {
 
 struct Counting {
     interp: Interp,
-    operations: Rc<Cell<u64>>,
+    operations: Arc<AtomicU64>,
 }
 
 impl Engine for Counting {
     fn init(&mut self, mem: &mut Region, cold: bool) {
         self.interp.init(mem.as_mut_slice(), cold);
     }
-    fn scan(&mut self, mem: &mut Region, task: u32, now_ns: i64) -> u32 {
-        let (status, operations) = self.interp.scan_counted(mem.as_mut_slice(), task, now_ns);
-        self.operations.set(self.operations.get() + operations);
+    fn scan(&mut self, part: &mut Part, task: u32, now_ns: i64) -> u32 {
+        let (status, operations) = self.interp.scan_counted(part.as_mut_slice(), task, now_ns);
+        self.operations.fetch_add(operations, Ordering::Relaxed);
         status
     }
 }
@@ -220,8 +222,8 @@ impl Engine for Shared {
     fn init(&mut self, mem: &mut Region, cold: bool) {
         self.engine.init(mem, cold);
     }
-    fn scan(&mut self, mem: &mut Region, task: u32, now_ns: i64) -> u32 {
-        self.engine.scan(mem, task, now_ns)
+    fn scan(&mut self, part: &mut Part, task: u32, now_ns: i64) -> u32 {
+        self.engine.scan(part, task, now_ns)
     }
 }
 

@@ -236,7 +236,7 @@ impl Bench {
         let Self { image, first, lanes, plan, .. } = self;
         first.restart();
         // SAFETY: the region lives in `first`, which outlives the watchdog; it does not move.
-        let mut watchdog = unsafe { Watchdog::new(first.region_mut().as_mut_ptr(), &image.tasks) }
+        let mut watchdog = unsafe { Watchdog::new(first.region_mut().as_mut_ptr(), &image.tasks, || ()) }
             .map_err(|e| Failure::device(format!("cannot start the watchdog thread: {e}")))?;
         for cycle in 0..plan.cycles {
             first.feed(cycle);
@@ -244,7 +244,8 @@ impl Bench {
             let number = first.execute(cycle);
             let _ = watchdog.stop();
             if number != 0 {
-                eprint!("{}", fault::describe(image, first.memory(), number, first.faulted, cycle + 1));
+                let (task, cycle) = (first.faulted, cycle + 1);
+                eprint!("{}", fault::describe(image, &first.region_mut().whole(), number, task, cycle));
                 return Ok(Some(1));
             }
         }

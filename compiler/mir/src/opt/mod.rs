@@ -19,6 +19,7 @@ mod inline;
 mod loops;
 mod promote;
 mod proven;
+mod ranges;
 mod rewrite;
 mod scale;
 mod select;
@@ -50,6 +51,7 @@ pub fn passes() -> &'static [Pass] {
     const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
     const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
+    const RANGES: Pass = Pass { name: "ranges", run: |p| each(p, ranges::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
         TIDY,
@@ -57,7 +59,8 @@ pub fn passes() -> &'static [Pass] {
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
         FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
         SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
-        PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        RANGES, TIDY,
+        PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
         SELECT, TIDY,
         Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
     ];
