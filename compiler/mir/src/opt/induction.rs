@@ -127,6 +127,15 @@ fn widen(func: &mut Func, tree: &Dominators, l: &Loop) {
             Repr::I64 => None,
             _ => wide_counter(func, l, latch, counter, signed, unsigned),
         };
+        if let (Last::Constant(last), [exit]) = (&last, &l.exits[..])
+            && leads_to(func, test.0, *exit)
+        {
+            let value = wide.map_or(counter.value, |(_, narrow)| narrow);
+            known_behind(func, l, *exit, value, counter.repr, *last as u64 & counter.repr.mask());
+            if let Some((wide, _)) = wide {
+                known_behind(func, l, *exit, wide, Repr::I64, *last as u64);
+            }
+        }
         return match (last, wide) {
             (Last::Constant(last), Some((wide, _))) => replace_test(func, test, Repr::I64, wide, last as u64),
             (Last::Constant(last), None) => replace_test(func, test, counter.repr, counter.value, last as u64),
@@ -135,6 +144,32 @@ fn widen(func: &mut Func, tree: &Dominators, l: &Loop) {
                 set_test(func, test, counter.repr, value, last);
             }
         };
+    }
+}
+
+fn leads_to(func: &Func, from: BlockId, to: BlockId) -> bool {
+    let mut leads = false;
+    func.blocks[from].term.for_each_target(|target| leads |= target.block == to);
+    leads
+}
+
+/// Behind the only exit of a loop, taken in the last pass, the counter has its last value.
+fn known_behind(func: &mut Func, l: &Loop, exit: BlockId, value: ValueId, repr: Repr, raw: u64) {
+    let dst = func.values.push(repr);
+    let mut used = false;
+    let mut rename = |v: &mut ValueId| {
+        if *v == value {
+            *v = dst;
+            used = true;
+        }
+    };
+    for id in func.blocks.indices().filter(|id| !l.blocks.contains(id)) {
+        let block = &mut func.blocks[id];
+        block.insts.iter_mut().for_each(|inst| visit::uses(inst, &mut rename));
+        visit::term_uses(&mut block.term, &mut rename);
+    }
+    if used {
+        func.blocks[exit].insts.insert(0, Inst::Const { dst, raw });
     }
 }
 

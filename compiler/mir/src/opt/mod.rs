@@ -22,6 +22,7 @@ mod promote;
 mod proven;
 mod ranges;
 mod rewrite;
+mod rotate;
 mod scale;
 mod select;
 mod ssa;
@@ -65,6 +66,8 @@ pub fn passes() -> &'static [Pass] {
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
         SELECT, TIDY, INDUCTION, TIDY,
         Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, INDUCTION, TIDY, HOIST, TIDY,
+        Pass { name: "rotate", run: |p| each(p, rotate::run) },
+        Pass { name: "clean", run: |p| each(p, clean::run) },
     ];
     PASSES
 }
