@@ -57,6 +57,7 @@ pub fn passes() -> &'static [Pass] {
     const INDUCTION: Pass = Pass { name: "induction", run: |p| each(p, induction::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
+        Pass { name: "references", run: alias::keep },
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
