@@ -522,7 +522,7 @@ fn generate(seed: u64) -> Program {
         callees.push(callee);
     }
     // What the constants among the references point into.
-    Program { addressable: (HEADER_BYTES, 1024), ..program(funcs, 1) }
+    Program { addressable: vec![(HEADER_BYTES, 1024)], ..program(funcs, 1) }
 }
 
 /// What lies in the globals before a scan.
