@@ -35,6 +35,7 @@ const OPERATORS: [(&str, BinaryOp); 14] = [
 
 /// The statements of a network, and the value of its condition if it has one.
 pub(super) fn statements(network: &Network, owner: &mut Owner, diags: &mut Diagnostics) -> (Vec<Stmt>, Option<Expr>) {
+    let errors = diags.error_count();
     let links = resolve(network, owner, diags);
     let order = order(network, &links);
     let mut position = vec![usize::MAX; network.elements.len()];
@@ -61,12 +62,21 @@ pub(super) fn statements(network: &Network, owner: &mut Owner, diags: &mut Diagn
         readers: FxHashMap::default(),
         out: Vec::new(),
         condition: None,
+        lost: None,
     };
     writer.count_uses();
     for (place, element) in order.iter().enumerate() {
         writer.element(*element, order.get(place + 1).copied());
     }
-    (writer.out, writer.condition)
+    let Writer { out, condition, lost, diags, .. } = writer;
+    // A value that is missing without a word would change what the program does.
+    if let Some(span) = lost.filter(|_| diags.error_count() == errors) {
+        diags.push(
+            Diagnostic::new(codes::UNCONNECTED_PIN, span, "no value comes over this connection")
+                .help("draw this connection again"),
+        );
+    }
+    (out, condition)
 }
 
 /// A value that was computed.
@@ -97,6 +107,8 @@ struct Writer<'n, 'o, 'u, 'd> {
     readers: FxHashMap<String, Vec<Source>>,
     out: Vec<Stmt>,
     condition: Option<Expr>,
+    /// Where a value is missing.
+    lost: Option<Span>,
 }
 
 /// What a statement writes.
@@ -197,12 +209,18 @@ impl<'n> Writer<'n, '_, '_, '_> {
             return match self.late.get(&source) {
                 Some(Some(name)) => variable(name, span),
                 Some(None) => self.stored(element, source.pin, span),
-                None => error(span),
+                None => self.missing(span),
             };
         }
-        let Some(value) = self.values.get_mut(&source) else { return error(span) };
+        let Some(value) = self.values.get_mut(&source) else { return self.missing(span) };
         value.uses = value.uses.saturating_sub(1);
         value.expr.clone()
+    }
+
+    /// A value that is not there; what is wrong was told, or will be at the end.
+    fn missing(&mut self, span: Span) -> Expr {
+        self.lost.get_or_insert(span);
+        error(span)
     }
 
     /// An output that is a variable anyway.
@@ -402,7 +420,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
         }
         if values.is_empty() {
             // A connection that was reported counts as one.
-            return (!found.connections.is_empty()).then(|| error(span));
+            return (!found.connections.is_empty()).then(|| self.missing(span));
         }
         // A value stands where it is used: messages name the pin, and arguments have the order of the pins.
         let value = Expr { span: found.span, ..or(values, span)? };
