@@ -1,6 +1,7 @@
 //! What single passes of the optimiser achieve, on small programs: how much of a kind of instruction is left. That the
 //! programs still mean the same is tested for each of them as well.
 
+mod divide;
 mod ranges;
 
 use plcc_hir::Profile;

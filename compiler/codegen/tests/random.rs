@@ -179,6 +179,8 @@ impl Generator<'_> {
             Add,
             Sub,
             Mul,
+            MulHiS,
+            MulHiU,
             DivS,
             DivU,
             RemS,
@@ -239,8 +241,13 @@ impl Generator<'_> {
         if !kind || !op.accepts(repr) {
             return;
         }
+        let by_constant = matches!(op, DivS | DivU | RemS | RemU) && self.random.chance(50);
         let args: Vec<ValueId> = (0..op.arity())
-            .map(|n| if op == Select && n == 0 { self.truth() } else { self.value(op.operand(repr, n)) })
+            .map(|n| match (op, n) {
+                (Select, 0) => self.truth(),
+                (_, 1) if by_constant => self.constant(repr),
+                _ => self.value(op.operand(repr, n)),
+            })
             .collect();
         let v = self.b.op(op, repr, &args);
         let v = self.settle(v);

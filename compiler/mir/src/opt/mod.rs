@@ -11,6 +11,7 @@ mod algebra;
 mod alias;
 mod clean;
 mod dead_stores;
+mod divide;
 mod fold;
 mod forward;
 mod frames;
@@ -62,6 +63,7 @@ pub fn passes() -> &'static [Pass] {
         RANGES, TIDY,
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
         SELECT, TIDY,
+        Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
     ];
     PASSES
