@@ -1,5 +1,7 @@
 //! The run flags: the same for `plcc run` and for every program that plcc built (docs/cli.md, "Run flags").
 
+use crate::realtime;
+use crate::release::Policy;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -30,9 +32,51 @@ pub struct RunFlags {
     /// Where RETAIN variables live.
     #[arg(long, value_name = "FILE")]
     pub retain: Option<PathBuf>,
-    /// Print execution times on exit.
+    /// How often changed RETAIN variables are written to their file while the program runs (default 500ms).
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub retain_flush: Option<i64>,
+    /// Start with initial values: RETAIN variables forget what they kept.
+    #[arg(long)]
+    pub cold: bool,
+    /// Print execution time, wake-up latency, period and reaction time on exit, and on SIGUSR1.
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", value_parser = ["text", "json"])]
     pub stats: Option<String>,
+    /// Draw the histograms of --stats on exit.
+    #[arg(long, value_name = "FILE")]
+    pub stats_svg: Option<PathBuf>,
+    /// The reaction time that every task has to keep; exit code 1 if one does not.
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub deadline: Option<i64>,
+    /// The longest execution of every task, instead of what the project says (default 1s).
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub watchdog: Option<i64>,
+    /// What follows when a cycle runs past its next release.
+    #[arg(long, value_enum, value_name = "POLICY", default_value_t = Policy::Asap)]
+    pub overrun: Policy,
+    /// What a fault does: stop the program, or restart the programs of its task.
+    #[arg(long, value_enum, value_name = "POLICY")]
+    pub on_fault: Option<OnFault>,
+    /// At a fault show the variables of the statement in the last N cycles (20).
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "20", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    pub history: Option<u16>,
+    /// Where %I comes from and %Q goes to: none, csv:IN.csv,OUT.csv, shm:NAME.
+    #[arg(long, value_name = "DRIVER")]
+    pub io: Option<String>,
+    /// Hold variables at values: NAME=VALUE,NAME=VALUE.
+    #[arg(long, value_name = "A=1,B=2")]
+    pub force: Option<String>,
+    /// Run with SCHED_FIFO at a priority (60), locked memory, and on a CPU if one is given.
+    #[arg(long, value_name = "PRIORITY[,CPU]", num_args = 0..=1, default_missing_value = "60", value_parser = realtime::parse)]
+    pub realtime: Option<realtime::Request>,
+}
+
+/// What a fault does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum OnFault {
+    /// The program stops, outputs go to their safe state.
+    Stop,
+    /// The programs of the task get their initial values and go on; its outputs go to their safe state once.
+    RestartTask,
 }
 
 /// A duration as `10ms`, `1.5s`, `2us`, `T#1m30s`, in nanoseconds; more than zero.

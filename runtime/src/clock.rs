@@ -1,5 +1,7 @@
 //! Time of the scan loop: virtual (exact, without waiting) or real (an absolute grid, so that nothing drifts).
 
+use crate::release::{Grid, Policy};
+
 /// Where cycles come from.
 #[derive(Debug)]
 pub enum Clock {
@@ -10,22 +12,33 @@ pub enum Clock {
     },
     /// The same grid on CLOCK_MONOTONIC.
     Real {
-        /// Nanoseconds.
-        interval_ns: i64,
-        /// When cycle 1 was released.
-        start_ns: i64,
-        /// The release of the next cycle, counted from 0.
-        next: u64,
+        /// The releases.
+        grid: Grid,
+        /// When cycle 1 was released; known when it is waited for, unless several resources share it.
+        start_ns: Option<i64>,
     },
 }
 
 /// The start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tick {
-    /// The scan clock.
+    /// The scan clock: the time of the release.
     pub now_ns: i64,
-    /// Releases, this one included, whose time had come while the cycle before was still running; 0 for a punctual tick.
-    pub late: u64,
+    /// Releases before this one that were skipped because their time passed while a cycle still ran.
+    pub skipped: u64,
+    /// The release itself is late: its time had passed, too.
+    pub late: bool,
+    /// When it woke up, CLOCK_MONOTONIC; 0 in virtual time.
+    pub woken_ns: i64,
+    /// When it should have, CLOCK_MONOTONIC; 0 in virtual time.
+    pub release_ns: i64,
+}
+
+impl Tick {
+    /// A punctual one, of virtual time.
+    pub fn at(now_ns: i64) -> Self {
+        Self { now_ns, skipped: 0, late: false, woken_ns: 0, release_ns: 0 }
+    }
 }
 
 /// CLOCK_MONOTONIC in nanoseconds.
@@ -45,41 +58,37 @@ fn sleep_until(ns: i64) {
 
 impl Clock {
     /// A clock that ticks every `interval_ns`.
-    pub fn new(virtual_time: bool, interval_ns: i64) -> Self {
+    pub fn new(virtual_time: bool, interval_ns: i64, policy: Policy) -> Self {
         if virtual_time {
             Clock::Virtual { interval_ns }
         } else {
-            Clock::Real { interval_ns, start_ns: monotonic_ns(), next: 0 }
+            Clock::Real { grid: Grid::new(interval_ns, policy), start_ns: None }
         }
     }
 
+    /// A real one whose release 0 is at a time of CLOCK_MONOTONIC.
+    pub fn on_grid(interval_ns: i64, policy: Policy, start_ns: i64) -> Self {
+        Clock::Real { grid: Grid::new(interval_ns, policy), start_ns: Some(start_ns) }
+    }
+
     /// Waits for the release of a cycle (from 1). `stop` is asked after each wake-up; `None` then, and at the end of time.
-    pub fn wait(&mut self, cycle: u64, stop: impl Fn() -> bool) -> Option<Tick> {
+    pub fn wait(&mut self, cycle: u64, mut stop: impl FnMut() -> bool) -> Option<Tick> {
         match self {
-            Clock::Virtual { interval_ns } => {
-                let now_ns = i64::try_from(cycle - 1).ok()?.checked_mul(*interval_ns)?;
-                Some(Tick { now_ns, late: 0 })
-            }
-            Clock::Real { interval_ns, start_ns, next } => {
-                let passed = monotonic_ns() - *start_ns;
-                let mut at = i64::try_from(*next).ok()?.checked_mul(*interval_ns)?;
-                let mut late = 0;
-                if *next > 0 && passed >= at {
-                    // Keep the grid: of the releases that have passed only the last is made up for.
-                    let missed = (passed - at) / *interval_ns;
-                    late = missed as u64 + 1;
-                    *next += missed as u64;
-                    at += missed * *interval_ns;
-                }
-                let due = start_ns.checked_add(at)?;
-                while monotonic_ns() < due {
+            Clock::Virtual { interval_ns } => Some(Tick::at(i64::try_from(cycle - 1).ok()?.checked_mul(*interval_ns)?)),
+            Clock::Real { grid, start_ns } => {
+                let mut now = monotonic_ns();
+                let start = *start_ns.get_or_insert(now);
+                let release = grid.next(now - start)?;
+                let release_ns = start.checked_add(release.due_ns)?;
+                while now < release_ns {
                     if stop() {
                         return None;
                     }
-                    sleep_until(due);
+                    sleep_until(release_ns);
+                    now = monotonic_ns();
                 }
-                *next += 1;
-                Some(Tick { now_ns: at, late })
+                let (skipped, late) = (release.skipped, release.late);
+                Some(Tick { now_ns: release.due_ns, skipped, late, woken_ns: now, release_ns })
             }
         }
     }
@@ -92,21 +101,23 @@ mod tests {
 
     #[test]
     fn virtual_time_is_exact() {
-        let mut clock = Clock::new(true, 7);
-        assert_eq!(clock.wait(1, || true), Some(Tick { now_ns: 0, late: 0 }));
-        assert_eq!(clock.wait(4, || true), Some(Tick { now_ns: 21, late: 0 }));
+        let mut clock = Clock::new(true, 7, Policy::Asap);
+        assert_eq!(clock.wait(1, || true), Some(Tick::at(0)));
+        assert_eq!(clock.wait(4, || true), Some(Tick::at(21)));
         assert_eq!(clock.wait(u64::MAX, || true), None);
     }
 
     #[test]
     fn real_time_keeps_its_grid_and_tells_what_it_missed() {
         let ms = 1_000_000;
-        let mut clock = Clock::new(false, 40 * ms);
-        assert_eq!(clock.wait(1, || false), Some(Tick { now_ns: 0, late: 0 }));
+        let mut clock = Clock::new(false, 40 * ms, Policy::Asap);
+        let first = clock.wait(1, || false).unwrap();
+        assert_eq!((first.now_ns, first.skipped, first.late), (0, 0, false));
         std::thread::sleep(Duration::from_millis(90));
         let tick = clock.wait(2, || false).unwrap();
         // At least the releases at 40 and 80 ms have passed; a busy machine may add some.
-        assert!(tick.late >= 2 && tick.now_ns == 40 * ms * tick.late as i64, "{tick:?}");
+        assert!(tick.skipped >= 1 && tick.late && tick.now_ns == 40 * ms * (tick.skipped as i64 + 1), "{tick:?}");
+        assert!(tick.woken_ns > tick.release_ns);
         assert_eq!(clock.wait(3, || true), None);
     }
 }

@@ -1,7 +1,7 @@
 //! What a linked program starts with: its `main`, made by the code generator, calls [`plcc_main`].
 
 use crate::cli::RunFlags;
-use crate::engine::{InitFn, NativeEngine, ScanFn};
+use crate::engine::{Engine, InitFn, NativeEngine, ScanFn};
 use crate::image::Image;
 use crate::run::run;
 use clap::{Args, Command, FromArgMatches};
@@ -51,7 +51,10 @@ pub unsafe extern "C" fn plcc_main(
             return e.exit_code();
         }
     };
-    // SAFETY: promised above; the run gives regions of the image's size.
-    let mut engine = unsafe { NativeEngine::new(init, scan) };
-    c_int::from(run(&image, &mut engine, &flags))
+    let engine = || -> Box<dyn Engine> {
+        // SAFETY: promised above; the run gives regions of the image's size.
+        Box::new(unsafe { NativeEngine::new(init, scan) })
+    };
+    let mut engines: Vec<Box<dyn Engine>> = image.resources.iter().map(|_| engine()).collect();
+    c_int::from(run(&image, &mut engines, &flags))
 }

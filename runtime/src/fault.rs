@@ -1,24 +1,24 @@
 //! Tells a fault: name, place, POU and instance, the offending values, the cycle (semantics.md \[E1\]).
 
-use crate::engine::Region;
-use crate::image::{Image, TypeDesc};
+use crate::engine::Part;
+use crate::image::{Image, Root, Statement, TypeDesc};
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::region;
 
-/// The text for standard error.
-pub fn describe(image: &Image, mem: &Region, number: u32, task: usize, cycle: u64) -> String {
+/// The text for standard error. The part holds the fault record.
+pub fn describe(image: &Image, part: &Part, number: u32, task: usize, cycle: u64) -> String {
     let Some(fault) = Fault::from_number(number) else {
         return format!("error[E0600]: the program stopped with the unknown status {number} in cycle {cycle}\n");
     };
-    let source = image.sources.get(mem.read_u32(region::FAULT_SOURCE) as usize);
-    let operands = [0, 1, 2].map(|n| mem.read_i64(region::FAULT_OPERANDS + 8 * n));
+    let source = image.sources.get(part.read_u32(region::FAULT_SOURCE) as usize);
+    let operands = [0, 1, 2].map(|n| part.read_i64(region::FAULT_OPERANDS + 8 * n));
     let mut out = format!("error[{}]: {}\n", fault.code(), fault.title());
     if let Some(source) = source {
         let file = image.files.get(source.file as usize).map_or("?", String::as_str);
         out.push_str(&format!("  --> {file}:{}:{}\n", source.line, source.column));
-        let instance = match mem.read_u32(region::FAULT_INSTANCE) {
+        let instance = match part.read_u32(region::FAULT_INSTANCE) {
             0 => None,
-            offset => instance_path(image, &source.pou, offset),
+            offset => instance_path(image, &source.pou, offset + part.start() as u32),
         };
         match instance {
             Some(path) => out.push_str(&format!("  in {} (instance {path})\n", source.pou)),
@@ -35,30 +35,42 @@ pub fn describe(image: &Image, mem: &Region, number: u32, task: usize, cycle: u6
     out
 }
 
+/// The statement in which the recorded fault happened, and the instance's offset in the part.
+pub fn statement<'i>(image: &'i Image, part: &Part) -> (Option<&'i Statement>, u32) {
+    let source = image.sources.get(part.read_u32(region::FAULT_SOURCE) as usize);
+    let statement = source.and_then(|s| s.statement).and_then(|n| image.statements.get(n as usize));
+    (statement, part.read_u32(region::FAULT_INSTANCE))
+}
+
 /// The path of the instance of a POU that starts at an offset. The variables of a program are roots of their own; its name
 /// is what stands in front of their dot.
 ///
-/// The first part of an instance starts where the instance does, so the POU decides between them; where none fits, the
-/// outermost is told.
+/// The first part of an instance starts where the instance does, so the POU decides between them. A function has no
+/// instance: the one that called it is told, of those that start there the program, else the outermost.
 fn instance_path(image: &Image, pou: &str, offset: u32) -> Option<String> {
     let pou = pou.split('.').next().unwrap_or(pou);
+    let full = |root: &Root, path: &str| match root.resource.and_then(|r| image.resources.get(r as usize)) {
+        Some(resource) if image.resources.len() > 1 => format!("{}.{path}", resource.name),
+        _ => path.to_string(),
+    };
     let mut outermost = None;
     for root in &image.roots {
         let mut found = Vec::new();
         inside(image, &root.name, root.offset, root.ty, offset, &mut found);
         if let Some((path, _)) = found.iter().find(|(_, name)| name.eq_ignore_ascii_case(pou)) {
-            return Some(path.clone());
+            return Some(full(root, path));
         }
-        outermost = outermost.or(found.into_iter().next().map(|(path, _)| path));
+        outermost = outermost.or(found.into_iter().next().map(|(path, _)| full(root, &path)));
     }
-    // Not a function block: the program whose variables start there.
     let program = || {
         let own = image.roots.iter().filter(|r| r.offset >= offset && r.name.contains('.') && r.bit.is_none());
-        own.min_by_key(|r| r.offset)?.name.split_once('.').map(|(program, _)| program.to_string())
+        let root = own.min_by_key(|r| r.offset)?;
+        root.name.split_once('.').map(|(program, _)| full(root, program))
     };
+    let starts_program = image.tasks.iter().flat_map(|t| &t.programs).any(|(start, _)| *start == offset);
     let is_block =
         image.types.iter().any(|t| matches!(t, TypeDesc::Struct { name, .. } if name.eq_ignore_ascii_case(pou)));
-    if is_block { outermost.or_else(program) } else { program().or(outermost) }
+    if is_block || !starts_program { outermost.or_else(program) } else { program().or(outermost) }
 }
 
 /// Collects the structures that start at `wanted` inside a variable, with the names of their types, outermost first.
@@ -97,14 +109,13 @@ fn inside(image: &Image, name: &str, start: u32, ty: u32, wanted: u32, found: &m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Field, Root};
+    use crate::image::{Field, Task};
     use plcc_stdlib::elem::Elem;
 
     /// `Main` at 64: `b : ARRAY [1..2] OF Outer` (16 bytes each), whose first variable is `i : Inner`, then `n : INT`.
     fn image() -> Image {
         let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
-        let root =
-            |name: &str, offset, ty| Root { name: name.into(), offset, bit: None, ty, constant: false, retain: false };
+        let root = |name: &str, offset, ty| Root { name: name.into(), offset, ty, ..Root::default() };
         Image {
             types: vec![
                 TypeDesc::Elem(Elem::Int.code()),
@@ -113,6 +124,7 @@ mod tests {
                 TypeDesc::Array { dims: vec![(1, 2)], elem: 2, stride: 16 },
             ],
             roots: vec![root("Main.b", 64, 3), root("Main.n", 96, 0)],
+            tasks: vec![Task { programs: vec![(64, 34)], ..Task::default() }],
             ..Image::default()
         }
     }
@@ -125,5 +137,7 @@ mod tests {
         assert_eq!(path("Outer", 64).as_deref(), Some("Main.b[1]"));
         assert_eq!(path("Outer.Act", 80).as_deref(), Some("Main.b[2]"));
         assert_eq!(path("Inner", 80).as_deref(), Some("Main.b[2].i"));
+        // A function that the block at 80 called.
+        assert_eq!(path("Helper", 80).as_deref(), Some("Main.b[2]"));
     }
 }

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 /// First bytes of an encoded image; the digit is the version.
-const MAGIC: &[u8; 8] = b"plccimg1";
+const MAGIC: &[u8; 8] = b"plccimg2";
 
 /// The application.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -14,17 +14,19 @@ pub struct Image {
     pub name: String,
     /// The CONFIGURATION's name; empty without one.
     pub configuration: String,
-    /// The RESOURCE's name; empty without one.
-    pub resource: String,
-    /// Size of the memory region, bytes.
+    /// The resources, in order of declaration; at least one.
+    pub resources: Vec<Resource>,
+    /// Size of the memory of all resources, bytes. Every offset in the image counts from its start.
     pub region_bytes: u32,
+    /// With several resources: the part of the memory that they share, first byte and length.
+    pub home: (u32, u32),
     /// Structural types, by index.
     pub types: Vec<TypeDesc>,
     /// Variables by their names in `--watch`.
     pub roots: Vec<Root>,
-    /// Tasks, in order of declaration.
+    /// Tasks, by resource, in order of declaration.
     pub tasks: Vec<Task>,
-    /// The areas %I, %Q, %M: first byte and length.
+    /// The areas %I, %Q, %M: first byte and length. With several resources those that they share.
     pub areas: [(u32, u32); 3],
     /// Byte ranges that a warm start keeps.
     pub retain: Vec<(u32, u32)>,
@@ -38,6 +40,47 @@ pub struct Image {
     pub safe_state: Vec<SafeValue>,
     /// VAR_ACCESS: other names of variables.
     pub access: Vec<AccessPath>,
+    /// Statements in which something can fail; see [`Source::statement`].
+    pub statements: Vec<Statement>,
+    /// What project.toml says about running; flags win.
+    pub defaults: Defaults,
+}
+
+/// What is not said by a flag.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Defaults {
+    /// `[faults] policy = "restart-task"`.
+    pub restart_task: bool,
+    /// `[io] driver`, as `--io` takes it.
+    pub io: Option<String>,
+    /// `[retain] flush`, nanoseconds.
+    pub retain_flush_ns: Option<i64>,
+}
+
+/// A resource: its part of the memory, and what it shares with others.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Resource {
+    /// Empty without CONFIGURATION.
+    pub name: String,
+    /// First byte of its part of the memory; what compiled code calls its region.
+    pub start: u32,
+    /// Bytes of it.
+    pub bytes: u32,
+    /// Configuration globals and areas of which it works on a copy (semantics.md \[C3\]).
+    pub shares: Vec<Share>,
+}
+
+/// Equal values that lie one behind the other, in the shared part and in a resource's copy.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Share {
+    /// First byte in the shared part.
+    pub home: u32,
+    /// First byte of the copy.
+    pub local: u32,
+    /// Bytes of all of them.
+    pub bytes: u32,
+    /// Bytes of one value, which is given back as a whole; 0: single bits are.
+    pub unit: u32,
 }
 
 /// A type, as memory sees it.
@@ -91,7 +134,7 @@ pub struct Field {
 }
 
 /// A variable with a name of its own: `Main.x`, or a global.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Root {
     /// As in `--watch`, without configuration and resource.
     pub name: String,
@@ -105,10 +148,12 @@ pub struct Root {
     pub constant: bool,
     /// RETAIN.
     pub retain: bool,
+    /// Its resource; `None` for what belongs to the configuration.
+    pub resource: Option<u32>,
 }
 
 /// A task.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Task {
     /// Empty for the task of programs without one.
     pub name: String,
@@ -120,6 +165,36 @@ pub struct Task {
     pub priority: u32,
     /// Longest execution.
     pub watchdog_ns: i64,
+    /// Index of its resource.
+    pub resource: u32,
+    /// The reaction time that it has to keep.
+    pub deadline_ns: Option<i64>,
+    /// Byte ranges of the instances of its programs: what a restart sets to initial values.
+    pub programs: Vec<(u32, u32)>,
+    /// Outputs that its programs own: offset, bit, bytes; a restart sets them to their safe values.
+    pub outputs: Vec<(u32, Option<u8>, u32)>,
+}
+
+/// The variables of a statement.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Statement {
+    /// In order of their first mention.
+    pub vars: Vec<StatementVar>,
+}
+
+/// A variable that a statement mentions.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StatementVar {
+    /// As it is written.
+    pub name: String,
+    /// The offset counts from the instance, not from the start of the resource's part.
+    pub in_instance: bool,
+    /// Bytes.
+    pub offset: u32,
+    /// The bit of a packed BOOL.
+    pub bit: Option<u8>,
+    /// Index of its type.
+    pub ty: u32,
 }
 
 /// A name that VAR_ACCESS gives to a variable.
@@ -134,7 +209,7 @@ pub struct AccessPath {
 }
 
 /// A place in a source.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// Index in `files`.
     pub file: u32,
@@ -146,6 +221,8 @@ pub struct Source {
     pub pou: String,
     /// The array or variable; may be empty.
     pub what: String,
+    /// Index in `statements`.
+    pub statement: Option<u32>,
 }
 
 /// A value for the safe state.
@@ -169,6 +246,13 @@ pub enum ImageError {
 }
 
 impl Image {
+    /// The numbers of the tasks of a resource.
+    pub fn tasks_of(&self, resource: usize) -> std::ops::Range<usize> {
+        let first = self.tasks.partition_point(|t| (t.resource as usize) < resource);
+        let behind = self.tasks.partition_point(|t| t.resource as usize <= resource);
+        first..behind
+    }
+
     /// As bytes.
     pub fn encode(&self) -> Vec<u8> {
         // Plain data always serialises.
@@ -193,6 +277,6 @@ mod tests {
         let image = Image { name: "x".into(), region_bytes: 64, types: vec![TypeDesc::Elem(2)], ..Image::default() };
         assert_eq!(Image::decode(&image.encode()), Ok(image));
         assert_eq!(Image::decode(b"nonsense"), Err(ImageError::NotAnImage));
-        assert_eq!(Image::decode(b"plccimg1\x05"), Err(ImageError::Damaged));
+        assert_eq!(Image::decode(b"plccimg2\x05"), Err(ImageError::Damaged));
     }
 }

@@ -57,15 +57,23 @@ fn parts(path: &str) -> Result<Vec<Part<'_>>, String> {
 #[derive(Debug)]
 pub struct Resolver<'i> {
     image: &'i Image,
-    /// Roots by upper-case name.
-    roots: std::collections::HashMap<String, usize>,
+    /// Roots by upper-case name: one, or one for each resource that has it.
+    roots: std::collections::HashMap<String, Vec<usize>>,
 }
 
 impl<'i> Resolver<'i> {
     /// For one image.
     pub fn new(image: &'i Image) -> Self {
-        let roots = image.roots.iter().enumerate().map(|(n, r)| (r.name.to_ascii_uppercase(), n)).collect();
+        let mut roots: std::collections::HashMap<String, Vec<usize>> = std::collections::HashMap::new();
+        for (n, root) in image.roots.iter().enumerate() {
+            roots.entry(root.name.to_ascii_uppercase()).or_default().push(n);
+        }
         Self { image, roots }
+    }
+
+    /// Only to turn values into text: it knows no names.
+    pub(crate) fn types_only(image: &'i Image) -> Self {
+        Self { image, roots: std::collections::HashMap::new() }
     }
 
     /// The columns that a name stands for: itself, or one per element of an aggregate, in order of declaration.
@@ -75,11 +83,22 @@ impl<'i> Resolver<'i> {
             Ok(found) => self.expand(path.trim(), &found, &mut out)?,
             Err(error) => {
                 // A program's name stands for all its variables.
-                let prefix = format!("{}.", self.strip(path.trim()).to_ascii_uppercase());
-                let own = self.image.roots.iter().filter(|r| r.name.to_ascii_uppercase().starts_with(&prefix));
+                let (resource, rest) = self.strip(path.trim());
+                let prefix = format!("{}.", rest.to_ascii_uppercase());
+                let own = self.image.roots.iter().filter(|r| {
+                    r.name.to_ascii_uppercase().starts_with(&prefix)
+                        && self.belongs(r, resource)
+                        && !r.name.contains('$')
+                });
+                let mut resources = Vec::new();
                 for root in own {
+                    resources.push(root.resource);
                     let name = format!("{}.{}", path.trim(), &root.name[prefix.len()..]);
                     self.expand(&name, &self.root_leaf(root), &mut out)?;
+                }
+                resources.dedup();
+                if resources.len() > 1 {
+                    return Err(self.ambiguous(path, resources.into_iter()));
                 }
                 if out.is_empty() {
                     return Err(error);
@@ -93,16 +112,39 @@ impl<'i> Resolver<'i> {
     pub fn all(&self) -> Result<Vec<(String, Leaf)>, String> {
         let mut out = Vec::new();
         for root in self.image.roots.iter().filter(|r| !r.name.contains('$')) {
-            self.expand(&root.name, &self.root_leaf(root), &mut out)?;
+            self.expand(&self.full_name(root), &self.root_leaf(root), &mut out)?;
         }
         Ok(out)
+    }
+
+    /// The shortest name that means this root alone.
+    fn full_name(&self, root: &crate::image::Root) -> String {
+        let alone = self.roots.get(&root.name.to_ascii_uppercase()).is_none_or(|same| same.len() < 2);
+        match root.resource.and_then(|r| self.image.resources.get(r as usize)) {
+            Some(resource) if !alone => format!("{}.{}", resource.name, root.name),
+            _ => root.name.clone(),
+        }
+    }
+
+    /// Whether a root can be meant behind the name of a resource.
+    fn belongs(&self, root: &crate::image::Root, resource: Option<u32>) -> bool {
+        resource.is_none() || root.resource.is_none() || root.resource == resource
+    }
+
+    fn ambiguous(&self, path: &str, resources: impl Iterator<Item = Option<u32>>) -> String {
+        let path = path.trim();
+        let name = |r: Option<u32>| match r.and_then(|r| self.image.resources.get(r as usize)) {
+            Some(resource) => format!("{}.{path}", resource.name),
+            None => format!("{}.{path}", self.image.configuration),
+        };
+        format!("`{path}` is ambiguous; write {}", resources.map(name).collect::<Vec<_>>().join(" or "))
     }
 
     /// Every leaf, hidden ones too.
     pub(crate) fn every_leaf(&self) -> Result<Vec<(String, Leaf)>, String> {
         let mut out = Vec::new();
         for root in &self.image.roots {
-            self.expand_with(&root.name, &self.root_leaf(root), true, &mut out)?;
+            self.expand_with(&self.full_name(root), &self.root_leaf(root), true, &mut out)?;
         }
         Ok(out)
     }
@@ -122,32 +164,32 @@ impl<'i> Resolver<'i> {
         Leaf { offset: root.offset, bit: root.bit, ty: root.ty, constant: root.constant }
     }
 
-    /// The name without configuration and resource in front.
-    fn strip<'p>(&self, path: &'p str) -> &'p str {
+    /// The resource that stands in front of a name, if one does, and the name without it and the configuration.
+    fn strip<'p>(&self, path: &'p str) -> (Option<u32>, &'p str) {
         let mut rest = path;
-        for prefix in [&self.image.configuration, &self.image.resource] {
-            if prefix.is_empty() {
-                continue;
-            }
-            if let Some((first, more)) = rest.split_once('.')
-                && first.eq_ignore_ascii_case(prefix)
-            {
+        let mut front = |wanted: &str| match rest.split_once('.') {
+            Some((first, more)) if !wanted.is_empty() && first.eq_ignore_ascii_case(wanted) => {
                 rest = more;
+                true
             }
-        }
-        rest
+            _ => false,
+        };
+        front(&self.image.configuration);
+        let resource = self.image.resources.iter().position(|r| front(&r.name));
+        (resource.map(|r| r as u32), rest)
     }
 
     fn find(&self, path: &str) -> Result<Leaf, String> {
+        let path = path.trim();
         // A name as it is wins over the same name behind a prefix.
-        match self.find_exact(path.trim()) {
+        match self.find_exact(path, None) {
             Ok(found) => Ok(found),
             Err(error) => {
-                let stripped = self.strip(path.trim());
+                let (resource, stripped) = self.strip(path);
                 if let Some(found) = self.find_access(stripped) {
                     return found;
                 }
-                if stripped.len() == path.trim().len() { Err(error) } else { self.find_exact(stripped) }
+                if stripped.len() == path.len() { Err(error) } else { self.find_exact(stripped, resource) }
             }
         }
     }
@@ -156,11 +198,16 @@ impl<'i> Resolver<'i> {
     fn find_access(&self, path: &str) -> Option<Result<Leaf, String>> {
         let end = path.find(['.', '[']).unwrap_or(path.len());
         let access = self.image.access.iter().find(|a| a.name.eq_ignore_ascii_case(&path[..end]))?;
-        let found = self.find_exact(&format!("{}{}", access.path, &path[end..]));
+        let target = format!("{}{}", access.path, &path[end..]);
+        let (resource, target) = match access.path.contains('.') {
+            true => self.strip(&target),
+            false => (None, target.as_str()),
+        };
+        let found = self.find_exact(target, resource);
         Some(found.map(|leaf| Leaf { constant: leaf.constant || !access.writable, ..leaf }))
     }
 
-    fn find_exact(&self, path: &str) -> Result<Leaf, String> {
+    fn find_exact(&self, path: &str, resource: Option<u32>) -> Result<Leaf, String> {
         let parts = parts(path)?;
         let name = |n: usize| match parts.get(n) {
             Some(Part::Name(name)) => Some(name.to_ascii_uppercase()),
@@ -168,12 +215,25 @@ impl<'i> Resolver<'i> {
         };
         // A program's variables are roots of two names.
         let double = name(0).zip(name(1)).map(|(a, b)| format!("{a}.{b}"));
-        let (root, used) = match double.and_then(|d| self.roots.get(&d)) {
-            Some(root) => (*root, 2),
-            None => match name(0).and_then(|n| self.roots.get(&n)) {
-                Some(root) => (*root, 1),
-                None => return Err(self.unknown(path)),
-            },
+        let found = |key: Option<String>| -> Vec<usize> {
+            let all = key.and_then(|k| self.roots.get(&k)).map(Vec::as_slice).unwrap_or_default();
+            all.iter().copied().filter(|n| self.belongs(&self.image.roots[*n], resource)).collect()
+        };
+        let (mut candidates, mut used) = (found(double), 2);
+        if candidates.is_empty() {
+            (candidates, used) = (found(name(0)), 1);
+        }
+        let root = match candidates.as_slice() {
+            [] => return Err(self.unknown(path)),
+            [one] => *one,
+            several => {
+                // Behind a resource's name its own variable hides that of the configuration.
+                let own = several.iter().find(|n| resource.is_some() && self.image.roots[**n].resource == resource);
+                match own {
+                    Some(own) => *own,
+                    None => return Err(self.ambiguous(path, several.iter().map(|n| self.image.roots[*n].resource))),
+                }
+            }
         };
         let mut leaf = self.root_leaf(&self.image.roots[root]);
         for part in &parts[used..] {
@@ -415,18 +475,17 @@ pub fn split_names(text: &str) -> Vec<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Field, Root};
+    use crate::image::{Field, Resource, Root};
 
     fn image() -> Image {
         let int = TypeDesc::Elem(Elem::Int.code());
         let matrix = TypeDesc::Array { dims: vec![(1, 2), (0, 1)], elem: 0, stride: 2 };
         let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
         let block = TypeDesc::Struct { name: "Fb".into(), fields: vec![field("m", 8, 1), field("n", 0, 0)] };
-        let root =
-            |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, constant: false, retain: false };
+        let root = |name: &str, offset, ty, bit| Root { name: name.into(), offset, bit, ty, ..Root::default() };
         Image {
             configuration: "Conf".into(),
-            resource: "Res".into(),
+            resources: vec![Resource { name: "Res".into(), ..Resource::default() }],
             types: vec![int, matrix, block, TypeDesc::Elem(Elem::Bool.code())],
             roots: vec![root("P1.fb", 64, 2, None), root("g", 100, 0, None), root("P1.lamp", 90, 3, Some(3))],
             ..Image::default()
@@ -447,6 +506,40 @@ mod tests {
         assert_eq!(hint("x", ["n"].into_iter()), "");
         assert!(!r.leaf("P1.fb.xyz").unwrap_err().contains("did you mean"));
         assert!(r.leaf("P1.fb").unwrap_err().contains("aggregate"));
+    }
+
+    /// Both resources have a program P1 and a global g, and the configuration has a global c.
+    #[test]
+    fn several_resources_need_their_names_where_a_short_one_is_ambiguous() {
+        let root = |name: &str, offset, resource| Root { name: name.into(), offset, resource, ..Root::default() };
+        let resource = |name: &str| Resource { name: name.into(), ..Resource::default() };
+        let image = Image {
+            configuration: "Conf".into(),
+            resources: vec![resource("A"), resource("B")],
+            types: vec![TypeDesc::Elem(Elem::Int.code())],
+            roots: vec![
+                root("P1.x", 64, Some(0)),
+                root("g", 70, Some(0)),
+                root("P1.x", 164, Some(1)),
+                root("P2.x", 166, Some(1)),
+                root("g", 170, Some(1)),
+                root("c", 200, None),
+            ],
+            ..Image::default()
+        };
+        let r = Resolver::new(&image);
+        let at = |path: &str| r.leaf(path).map(|l| l.offset);
+        assert_eq!((at("A.P1.x"), at("conf.b.p1.x"), at("P2.x")), (Ok(64), Ok(164), Ok(166)));
+        assert_eq!(
+            (at("A.g"), at("B.g"), at("c"), at("A.c"), at("Conf.c")),
+            (Ok(70), Ok(170), Ok(200), Ok(200), Ok(200))
+        );
+        assert_eq!(at("P1.x"), Err("`P1.x` is ambiguous; write A.P1.x or B.P1.x".into()));
+        assert_eq!(at("g"), Err("`g` is ambiguous; write A.g or B.g".into()));
+        assert!(r.columns("P1").unwrap_err().contains("ambiguous"));
+        assert_eq!(r.columns("B.P1").unwrap().len(), 1);
+        let all: Vec<String> = r.all().unwrap().into_iter().map(|c| c.0).collect();
+        assert_eq!(all, ["A.P1.x", "A.g", "B.P1.x", "P2.x", "B.g", "c"]);
     }
 
     #[test]

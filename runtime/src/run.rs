@@ -1,26 +1,31 @@
 //! Runs an application as the flags say; the result is the exit code of docs/cli.md.
 
 use crate::charts::Charts;
-use crate::cli::RunFlags;
+use crate::cli::{OnFault, RunFlags};
 use crate::clock::Clock;
+use crate::edges::{Edges, Taken};
 use crate::engine::{Engine, Region};
+use crate::history::History;
 use crate::image::Image;
 use crate::path::{self, Resolver};
-use crate::retain::Retain;
+use crate::retain::{Opened, Retain, Writer};
 use crate::scan::{End, Scan};
-use crate::stats::Stats;
+use crate::stats::{self, Stats};
 use crate::stimulus::Stimulus;
-use crate::task::{Schedule, base_tick};
+use crate::task::{Counts, Schedule, base_tick};
+use crate::threads::{self, Threads};
 use crate::trace::{self, Trace};
 use crate::vcd::Vcd;
 use crate::watchdog::Watchdog;
-use crate::{fault, signals};
+use crate::worker::Worker;
+use crate::{force, io, realtime, signals};
 use std::io::Write;
 use std::path::Path;
+use std::time::Duration;
 
-/// Runs it; messages go to standard error.
-pub fn run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> u8 {
-    match prepare_and_run(image, engine, flags) {
+/// Runs it, with one engine for each resource; messages go to standard error.
+pub fn run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFlags) -> u8 {
+    match prepare_and_run(image, engines, flags) {
         Ok(code) => code,
         Err((code, message)) => {
             if !message.is_empty() {
@@ -31,13 +36,21 @@ pub fn run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> u8 {
     }
 }
 
-fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> Result<u8, (u8, String)> {
+fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFlags) -> Result<u8, (u8, String)> {
+    assert_eq!(engines.len(), image.resources.len(), "an engine for each resource");
+    let mut image = image.clone();
+    for task in &mut image.tasks {
+        task.watchdog_ns = flags.watchdog.unwrap_or(task.watchdog_ns);
+        task.deadline_ns = flags.deadline.or(task.deadline_ns);
+    }
+    let image = &image;
     let resolver = Resolver::new(image);
     let columns = match (&flags.trace, &flags.vcd, &flags.watch) {
         (None, None, None) => Vec::new(),
         (_, _, watch) => trace::columns(watch.as_deref(), &resolver).map_err(|e| (2, e))?,
     };
     let stimulus = flags.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose()?;
+    let forces = flags.force.as_deref().map(|text| force::parse(text, &resolver)).transpose().map_err(|e| (2, e))?;
     // A watch list alone is read on standard output.
     let alone = (flags.watch.is_some() && flags.vcd.is_none()).then_some(Path::new("-"));
     let trace_path = flags.trace.as_deref().or(alone);
@@ -49,69 +62,218 @@ fn prepare_and_run(image: &Image, engine: &mut dyn Engine, flags: &RunFlags) -> 
     let vcd =
         flags.vcd.as_deref().map(|path| Vcd::open(path, image, columns.clone())).transpose().map_err(unwritable)?;
     let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(unwritable)?;
+    let driver = io::open(flags.io.as_deref().or(image.defaults.io.as_deref()).unwrap_or("none"), image, &resolver)?;
     signals::install();
-    let retain_file = flags.retain.as_deref().or(image.retain_file.as_deref().map(Path::new));
-    let (retain, restored) = match retain_file.map(|path| Retain::open(path, image, &resolver)).transpose()? {
-        Some((retain, restored)) => (Some(retain), restored),
-        None => (None, Vec::new()),
-    };
+    if flags.realtime.is_some() {
+        enter_realtime(image);
+    }
+    let (retain, restored, writers) = open_retain(image, &resolver, flags)?;
     let mut mem = Region::new(image.region_bytes as usize);
     // Variables that the retain file does not know yet need their initial values even in a warm start.
-    engine.init(&mut mem, true);
+    engines[0].init(&mut mem, true);
+    let initial = (flags.on_fault.map_or(image.defaults.restart_task, |p| p == OnFault::RestartTask))
+        .then(|| mem.as_slice().to_vec());
     for value in &restored {
         path::write(mem.as_mut_slice(), value.offset, value.bit, &value.bytes);
     }
-    // SAFETY: `mem` lives to the end of this function, behind the watchdog's drop: it is declared before.
-    let mut watchdog = unsafe { Watchdog::new(mem.as_mut_ptr(), &image.tasks) }
-        .map_err(|e| (3, format!("cannot start the watchdog thread: {e}")))?;
-    let interval_ns = flags.interval.unwrap_or_else(|| base_tick(&image.tasks));
-    let mut scan = Scan {
-        image,
-        resolver: &resolver,
-        engine,
-        mem: &mut mem,
-        watchdog: &mut watchdog,
-        clock: Clock::new(flags.virtual_time, interval_ns),
-        schedule: Schedule::new(&image.tasks),
-        stimulus,
-        trace,
-        vcd,
-        interval_ns,
-        retain,
-        stats: flags.stats.as_ref().map(|_| Stats::new(&image.tasks)),
-        charts: Charts::new(image, &resolver),
-        cycles: flags.cycles,
+    let measured =
+        flags.stats.is_some() || flags.stats_svg.is_some() || image.tasks.iter().any(|t| t.deadline_ns.is_some());
+    let mut writers = writers.into_iter();
+    let mut workers = Vec::new();
+    for (number, engine) in engines.iter_mut().enumerate() {
+        let tasks = &image.tasks[image.tasks_of(number)];
+        let resource = &image.resources[number];
+        let realtime = flags.realtime;
+        let ready = move || {
+            // What could not be had was said before.
+            let _ = realtime.map(|request| realtime::enter(&request, 1, None));
+        };
+        // SAFETY: `mem` lives to the end of this function, behind the workers' drop: it is declared before.
+        let watchdog = unsafe { Watchdog::new(mem.as_mut_ptr().add(resource.start as usize), tasks, ready) }
+            .map_err(|e| (3, format!("cannot start the watchdog thread: {e}")))?;
+        let schedule = Schedule::new(tasks);
+        let worker = Worker {
+            image,
+            resolver: &resolver,
+            resource: number,
+            engine: engine.as_mut(),
+            watchdog,
+            events: schedule.has_events(),
+            schedule,
+            stats: measured.then(|| Stats::new(image.tasks.len())),
+            retain: writers.next().flatten(),
+            history: flags.history.map(|n| History::new(usize::from(n), resource.bytes as usize)),
+            initial: initial.as_deref(),
+            taken: Taken::new(resource),
+            restarts: vec![0; tasks.len()],
+        };
+        workers.push((worker, flags.interval.unwrap_or_else(|| base_tick(tasks))));
+    }
+    let interval_ns = workers.iter().map(|(_, ns)| *ns).reduce(crate::task::gcd).unwrap_or(1);
+    let shared_retain = writers.next().flatten();
+    let edges = Edges::new(image, driver, forces.unwrap_or_default());
+    // What is recorded needs one moment for all resources: then they run one after the other, as in virtual time.
+    let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some();
+    let (end, workers) = if image.resources.len() > 1 && !flags.virtual_time && !recorded {
+        run_threads(image, &mut mem, workers, edges, shared_retain, flags, interval_ns)
+    } else {
+        if let Some(request) = &flags.realtime
+            && let Err(e) = realtime::enter(request, 0, request.cpu)
+        {
+            eprintln!("{}: --realtime: {e}; it runs with normal scheduling", image.name);
+        }
+        realtime::precise_timers();
+        realtime::touch_stack();
+        let mut scan = Scan {
+            image,
+            resolver: &resolver,
+            mem: &mut mem,
+            workers,
+            edges,
+            clock: Clock::new(flags.virtual_time, interval_ns, flags.overrun),
+            stimulus,
+            trace,
+            vcd,
+            interval_ns,
+            retain: shared_retain,
+            charts: Charts::new(image, &resolver),
+            cycles: flags.cycles,
+            report: Box::new(|workers| {
+                let workers: Vec<&Worker> = workers.iter().map(|(w, _)| w).collect();
+                print_now(image, &workers);
+            }),
+        };
+        let end = scan.run();
+        (end, scan.workers.into_iter().map(|(w, _)| w).collect())
     };
-    let end = scan.run();
-    if let (Some(stats), Some(format)) = (&scan.stats, &flags.stats) {
-        let report = stats.report(&image.tasks, scan.schedule.overruns(), format == "json");
+    let on_stdout = [trace_path, flags.vcd.as_deref()].contains(&Some(Path::new("-")));
+    let missed = finish_stats(image, workers, flags, on_stdout)?;
+    let kept = retain.map_or(Ok(()), Retain::finish);
+    match end {
+        End::Stopped => kept.map(|()| u8::from(missed)).map_err(|e| (3, e)),
+        End::Fault(told) => {
+            eprint!("{told}");
+            if let Err(e) = kept {
+                eprintln!("{}: {e}", image.name);
+            }
+            Ok(1)
+        }
+        End::Failed(message) if message.is_empty() => Ok(0),
+        End::Failed(message) => Err((3, message)),
+    }
+}
+
+type Kept = (Option<Retain>, Vec<crate::retain::Restored>, Vec<Option<Writer>>);
+
+fn open_retain(image: &Image, resolver: &Resolver, flags: &RunFlags) -> Result<Kept, (u8, String)> {
+    let file = flags.retain.as_deref().or(image.retain_file.as_deref().map(Path::new));
+    let flush = flags.retain_flush.or(image.defaults.retain_flush_ns).map(|ns| Duration::from_nanos(ns as u64));
+    match file {
+        None => Ok((None, Vec::new(), Vec::new())),
+        Some(path) => {
+            let Opened { retain, restored, writers } = Retain::open(path, image, resolver, flush)?;
+            Ok((Some(retain), if flags.cold { Vec::new() } else { restored }, writers))
+        }
+    }
+}
+
+/// Locks memory; what may not be is said once.
+fn enter_realtime(image: &Image) {
+    if let Err(e) = realtime::lock_memory() {
+        eprintln!("{}: --realtime: {e}", image.name);
+    }
+}
+
+fn run_threads<'a>(
+    image: &'a Image,
+    mem: &mut Region,
+    workers: Vec<(Worker<'a>, i64)>,
+    edges: Edges<'a>,
+    retain: Option<Writer>,
+    flags: &RunFlags,
+    interval_ns: i64,
+) -> (End, Vec<Worker<'a>>) {
+    let mut ranges: Vec<(u32, u32)> = image.resources.iter().map(|r| (r.start, r.bytes)).collect();
+    ranges.push(image.home);
+    let mut parts = mem.split(&ranges);
+    let Some(home) = parts.pop() else { return (End::Stopped, Vec::new()) };
+    let workers = workers.into_iter().zip(parts).map(|((worker, tick), part)| (worker, tick, part)).collect();
+    let until_ns = flags.cycles.map(|n| i64::try_from(n).unwrap_or(i64::MAX).saturating_mul(interval_ns));
+    let report = |worker: &Worker| print_now(image, &[worker]);
+    let (policy, realtime) = (flags.overrun, flags.realtime);
+    threads::run(Threads { edges, home, workers, policy, until_ns, realtime, retain, report: &report })
+}
+
+/// The statistics of a run that goes on, on standard error.
+fn print_now(image: &Image, workers: &[&Worker]) {
+    for worker in workers {
+        let tasks = image.tasks_of(worker.resource);
+        match &worker.stats {
+            Some(stats) => eprint!("{}", stats.report(image, tasks.clone(), worker.schedule.counts(), false)),
+            None => {
+                for (task, counts) in image.tasks[tasks].iter().zip(worker.schedule.counts()) {
+                    let Counts { executed, overruns, skipped } = counts;
+                    let name = stats::shown(image, task);
+                    eprintln!("{name}: {executed} cycles, {overruns} overruns, {skipped} skipped (times need --stats)");
+                }
+            }
+        }
+    }
+}
+
+/// Prints and draws the statistics, and tells missed deadlines and restarts. Whether a deadline was missed.
+fn finish_stats(image: &Image, workers: Vec<Worker>, flags: &RunFlags, on_stdout: bool) -> Result<bool, (u8, String)> {
+    let mut counts: Vec<Counts> = Vec::new();
+    let mut all: Option<Stats> = None;
+    for worker in workers {
+        counts.extend(worker.schedule.counts());
+        for (task, restarts) in image.tasks[image.tasks_of(worker.resource)].iter().zip(&worker.restarts) {
+            if *restarts > 0 {
+                eprintln!("{}: {} started again after {restarts} faults", image.name, stats::shown(image, task));
+            }
+        }
+        match (&mut all, worker.stats) {
+            (Some(all), Some(stats)) => all.merge(stats),
+            (all, stats) => *all = stats,
+        }
+    }
+    let Some(stats) = all else { return Ok(false) };
+    let tasks = 0..image.tasks.len();
+    if let Some(format) = &flags.stats {
+        let report = stats.report(image, tasks.clone(), &counts, format == "json");
         // A result; but where the trace is on standard output, nothing else may stand there.
-        if [trace_path, flags.vcd.as_deref()].contains(&Some(Path::new("-"))) {
+        if on_stdout {
             eprint!("{report}");
         } else {
             // A reader that went away does not matter any more.
             let _ = std::io::stdout().write_all(report.as_bytes());
         }
     }
-    let kept = scan.retain.take().map_or(Ok(()), Retain::finish);
-    match end {
-        End::Stopped => kept.map(|()| 0).map_err(|e| (3, e)),
-        End::Fault(number, task, cycle) => {
-            eprint!("{}", fault::describe(image, scan.mem, number, task, cycle));
-            if let Err(e) = kept {
-                eprintln!("{}: {e}", image.name);
-            }
-            Ok(1)
-        }
-        End::Trace(message) if message.is_empty() => Ok(0),
-        End::Trace(message) => Err((3, message)),
+    if let Some(path) = &flags.stats_svg {
+        std::fs::write(path, stats.svg(image)).map_err(|e| (3, format!("cannot write `{}`: {e}", path.display())))?;
     }
+    let mut missed = false;
+    for (n, task) in image.tasks.iter().enumerate() {
+        let reaction = stats.reaction(n, task.deadline_ns);
+        if let (true, Some(deadline)) = (reaction.missed(), reaction.deadline_ns) {
+            missed = true;
+            eprintln!(
+                "{}: the reaction time of {} may be {} ns, its deadline is {deadline} ns",
+                image.name,
+                stats::shown(image, task),
+                reaction.worst_ns()
+            );
+        }
+    }
+    Ok(missed)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Root, Source, Task, TypeDesc};
+    use crate::engine::Part;
+    use crate::fault;
+    use crate::image::{Resource, Root, Source, Task, TypeDesc};
     use plcc_stdlib::elem::Elem;
     use plcc_stdlib::fault::Fault;
     use plcc_stdlib::region;
@@ -126,8 +288,8 @@ mod tests {
         fn init(&mut self, mem: &mut Region, _cold: bool) {
             mem.as_mut_slice()[64] = 1;
         }
-        fn scan(&mut self, mem: &mut Region, _task: u32, now_ns: i64) -> u32 {
-            let m = mem.as_mut_slice();
+        fn scan(&mut self, part: &mut Part, _task: u32, now_ns: i64) -> u32 {
+            let m = part.as_mut_slice();
             m[region::CLOCK_NS as usize..][..8].copy_from_slice(&now_ns.to_le_bytes());
             let value = i16::from_le_bytes([m[64], m[65]]);
             if value < 0 {
@@ -148,23 +310,22 @@ mod tests {
     }
 
     fn image() -> Image {
-        let root = Root { name: "M.n".into(), offset: 64, bit: None, ty: 0, constant: false, retain: false };
+        let root = Root { name: "M.n".into(), offset: 64, ..Root::default() };
         Image {
             name: "test".into(),
             region_bytes: 128,
             types: vec![TypeDesc::Elem(Elem::Int.code())],
             roots: vec![root],
-            tasks: vec![Task {
-                name: String::new(),
-                interval_ns: None,
-                single: None,
-                priority: 0,
-                watchdog_ns: 30_000_000,
-            }],
+            resources: vec![Resource { bytes: 128, ..Resource::default() }],
+            tasks: vec![Task { watchdog_ns: 30_000_000, ..Task::default() }],
             files: vec!["m.st".into()],
-            sources: vec![Source { file: 0, line: 3, column: 5, pou: "M".into(), what: "a".into() }],
+            sources: vec![Source { file: 0, line: 3, column: 5, pou: "M".into(), what: "a".into(), statement: None }],
             ..Image::default()
         }
+    }
+
+    fn go(image: &Image, limit: i16, flags: &RunFlags) -> u8 {
+        run(image, &mut [Box::new(Counter { limit })], flags)
     }
 
     fn scratch(name: &str) -> std::path::PathBuf {
@@ -183,7 +344,7 @@ mod tests {
             watch: Some("m.N".into()),
             ..RunFlags::default()
         };
-        assert_eq!(run(&image(), &mut Counter { limit: 12 }, &flags), 1);
+        assert_eq!(go(&image(), 12, &flags), 1);
         assert_eq!(std::fs::read_to_string(&trace).unwrap(), "cycle,m.N\n1,2\n2,3\n3,11\n4,12\n");
         let _ = (std::fs::remove_file(trace), std::fs::remove_file(stimulus));
     }
@@ -202,15 +363,15 @@ mod tests {
             ..RunFlags::default()
         };
         let traced = || std::fs::read_to_string(&trace).unwrap();
-        assert_eq!(run(&image, &mut Counter { limit: -9 }, &flags), 0);
+        assert_eq!(go(&image, -9, &flags), 0);
         assert_eq!(traced(), "cycle,M.n\n1,2\n2,3\n3,4\n");
         // The third cycle of this run, which would make it 7, faults.
-        assert_eq!(run(&image, &mut Counter { limit: 6 }, &flags), 1);
+        assert_eq!(go(&image, 6, &flags), 1);
         assert_eq!(traced(), "cycle,M.n\n1,5\n2,6\n");
-        assert_eq!(run(&image, &mut Counter { limit: -9 }, &flags), 0);
+        assert_eq!(go(&image, -9, &flags), 0);
         assert_eq!(traced(), "cycle,M.n\n1,7\n2,8\n3,9\n");
         std::fs::write(&retain, "something else").unwrap();
-        assert_eq!(run(&image, &mut Counter { limit: -9 }, &flags), 3);
+        assert_eq!(go(&image, -9, &flags), 3);
         let _ = (std::fs::remove_file(trace), std::fs::remove_file(retain));
     }
 
@@ -221,7 +382,7 @@ mod tests {
         let flags =
             RunFlags { cycles: Some(9), virtual_time: true, stimulus: Some(stimulus.clone()), ..RunFlags::default() };
         let start = std::time::Instant::now();
-        assert_eq!(run(&image(), &mut Counter { limit: -9 }, &flags), 1);
+        assert_eq!(go(&image(), -9, &flags), 1);
         assert!(start.elapsed() >= std::time::Duration::from_millis(30));
         let _ = std::fs::remove_file(stimulus);
     }
@@ -229,9 +390,9 @@ mod tests {
     #[test]
     fn wrong_names_and_files_end_before_the_first_cycle() {
         let watch = |name: &str| RunFlags { watch: Some(name.into()), cycles: Some(1), ..RunFlags::default() };
-        assert_eq!(run(&image(), &mut Counter { limit: -9 }, &watch("M.x")), 2);
+        assert_eq!(go(&image(), -9, &watch("M.x")), 2);
         let trace = RunFlags { trace: Some("no/such/folder/t.csv".into()), ..watch("M.n") };
-        assert_eq!(run(&image(), &mut Counter { limit: -9 }, &trace), 3);
+        assert_eq!(go(&image(), -9, &trace), 3);
     }
 
     #[test]
@@ -241,7 +402,8 @@ mod tests {
         for (n, v) in [7i64, 1, 5].iter().enumerate() {
             m[region::FAULT_OPERANDS as usize + 8 * n..][..8].copy_from_slice(&v.to_le_bytes());
         }
-        let text = fault::describe(&image(), &mem, Fault::IndexOutOfBounds.number(), 0, 4);
+        let [part] = mem.parts([(0, 128)]);
+        let text = fault::describe(&image(), &part, Fault::IndexOutOfBounds.number(), 0, 4);
         assert_eq!(
             text,
             "error[E0602]: index out of bounds\n  --> m.st:3:5\n  in M\n  index of `a` is 7, its bounds are 1..5\n  cycle 4\n"

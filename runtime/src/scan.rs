@@ -1,37 +1,38 @@
-//! The scan loop: inputs, execute, outputs.
+//! The scan loop on one thread: all resources in order of declaration, and what is recorded of each cycle.
 
 use crate::charts::Charts;
-use crate::clock::{Clock, Tick, monotonic_ns};
-use crate::engine::{Engine, Region};
+use crate::clock::{Clock, Tick};
+use crate::edges::Edges;
+use crate::engine::{Part, Region};
 use crate::image::Image;
 use crate::path::Resolver;
-use crate::retain::Retain;
-use crate::stats::Stats;
+use crate::retain::Writer;
+use crate::signals;
 use crate::stimulus::Stimulus;
-use crate::task::Schedule;
 use crate::trace::Trace;
 use crate::vcd::Vcd;
-use crate::watchdog::Watchdog;
-use crate::{process_image, signals};
+use crate::worker::{Halt, Meeting, Worker};
 
 /// Everything a run works on.
 pub struct Scan<'a> {
     pub image: &'a Image,
     pub resolver: &'a Resolver<'a>,
-    pub engine: &'a mut dyn Engine,
     pub mem: &'a mut Region,
-    pub watchdog: &'a mut Watchdog,
+    /// By resource, with its base tick.
+    pub workers: Vec<(Worker<'a>, i64)>,
+    pub edges: Edges<'a>,
     pub clock: Clock,
-    pub schedule: Schedule,
     pub stimulus: Option<Stimulus>,
     pub trace: Option<Trace>,
     pub vcd: Option<Vcd>,
     pub interval_ns: i64,
-    pub retain: Option<Retain>,
-    pub stats: Option<Stats>,
+    /// Of what resources share.
+    pub retain: Option<Writer>,
     pub charts: Charts,
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
+    /// Tells the statistics, when somebody asked for them.
+    pub report: Box<dyn FnMut(&[(Worker, i64)]) + 'a>,
 }
 
 /// How a run ended.
@@ -39,60 +40,101 @@ pub struct Scan<'a> {
 pub enum End {
     /// All cycles ran, or somebody asked to stop.
     Stopped,
-    /// A task faulted: the fault's number, the task, the cycle.
-    Fault(u32, usize, u64),
-    /// The trace cannot be written; empty if only its reader went away.
-    Trace(String),
+    /// A task faulted; the message.
+    Fault(String),
+    /// A file or device failed; empty if only a reader of the trace went away.
+    Failed(String),
+}
+
+/// No other thread: nothing to wait for.
+struct Alone<'e, 'a, 'm> {
+    edges: &'e mut Edges<'a>,
+    home: Option<Part<'m>>,
+}
+
+impl<'m> Meeting<'m> for Alone<'_, '_, 'm> {
+    fn meet<R>(&mut self, f: impl FnOnce(&mut Edges, Option<&mut Part<'m>>) -> R) -> R {
+        f(self.edges, self.home.as_mut())
+    }
 }
 
 impl Scan<'_> {
     /// Runs cycles until one of the ends.
     pub fn run(&mut self) -> End {
-        let mut cycle: u64 = 1;
+        let end = self.cycles();
+        match (self.flush(), end) {
+            (Err(e), End::Stopped) => End::Failed(e),
+            (Err(e), End::Fault(told)) if !e.is_empty() => End::Failed(format!("{told}{e}")),
+            (_, end) => end,
+        }
+    }
+
+    fn cycles(&mut self) -> End {
+        let (mut cycle, mut reports) = (1u64, signals::reports_requested());
         while self.cycles.is_none_or(|n| cycle <= n) && !signals::stop_requested() {
-            let Some(tick) = self.clock.wait(cycle, signals::stop_requested) else { break };
+            let Some(tick) = self.clock.wait(cycle, || {
+                let asked = signals::reports_requested();
+                if asked != std::mem::replace(&mut reports, asked) {
+                    (self.report)(&self.workers);
+                }
+                signals::stop_requested()
+            }) else {
+                break;
+            };
             if let Some(stimulus) = &mut self.stimulus {
                 stimulus.apply(cycle, self.mem.as_mut_slice());
             }
-            if let Err((number, task)) = self.execute(tick) {
-                process_image::safe_state(self.image, self.mem);
-                return match self.flush() {
-                    Err(e) if !e.is_empty() => End::Trace(e),
-                    _ => End::Fault(number, task, cycle),
+            if let Err(halt) = self.execute(cycle, tick) {
+                return match halt {
+                    Halt::Fault(told) => End::Fault(told),
+                    Halt::Driver(told) => End::Failed(told),
                 };
             }
             let news = self.charts.check(cycle, self.mem.as_mut_slice());
             if !news.is_empty() {
                 eprint!("{news}");
             }
-            if let Some(retain) = &mut self.retain {
-                retain.capture(self.mem.as_slice());
-            }
             if let Err(e) = self.record(cycle, tick) {
-                return End::Trace(e);
+                return End::Failed(e);
             }
             cycle += 1;
         }
-        match self.flush() {
-            Ok(()) => End::Stopped,
-            Err(e) => End::Trace(e),
-        }
+        End::Stopped
     }
 
-    fn execute(&mut self, tick: Tick) -> Result<(), (u32, usize)> {
-        let Scan { schedule, engine, mem, watchdog, stats, .. } = self;
-        schedule.sample(mem.as_slice());
-        schedule.release(tick, |task| {
-            let before = stats.as_ref().map(|_| monotonic_ns());
-            watchdog.start(task);
-            let status = engine.scan(mem, task as u32, tick.now_ns);
-            // An execution that ended late without a poll has ended: there is nothing left to stop.
-            let _ = watchdog.stop();
-            if let (Some(stats), Some(before)) = (stats.as_mut(), before) {
-                stats.record(task, monotonic_ns() - before);
+    fn execute(&mut self, cycle: u64, tick: Tick) -> Result<(), Halt> {
+        let Scan { image, workers, edges, mem, retain, .. } = self;
+        edges.begin(cycle);
+        let several = image.resources.len() > 1;
+        for (worker, every_ns) in workers.iter_mut() {
+            if tick.now_ns % *every_ns != 0 && several {
+                continue;
             }
-            if status == 0 { Ok(()) } else { Err((status, task)) }
-        })
+            let resource = &image.resources[worker.resource];
+            let own = (resource.start, resource.bytes);
+            let (mut part, home) = if several {
+                let [part, home] = mem.parts([own, image.home]);
+                (part, Some(home))
+            } else {
+                let [part] = mem.parts([own]);
+                (part, None)
+            };
+            let mut alone = Alone { edges, home };
+            worker.tick(cycle, tick, &mut part, &mut alone)?;
+            worker.finish_cycle(cycle, &part);
+        }
+        let first = &image.resources[0];
+        let end = if several {
+            let [mut part, mut home] = mem.parts([(first.start, first.bytes), image.home]);
+            if let Some(retain) = retain {
+                retain.capture(home.start(), home.as_slice());
+            }
+            edges.end(&mut part, Some(&mut home))
+        } else {
+            let [mut part] = mem.parts([(first.start, first.bytes)]);
+            edges.end(&mut part, None)
+        };
+        end.map_err(Halt::Driver)
     }
 
     /// Trace and waveform of a finished cycle.

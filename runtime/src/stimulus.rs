@@ -104,6 +104,15 @@ impl Stimulus {
         Ok(Self { rows, next: 0 })
     }
 
+    /// Makes all offsets count from the start of an area; the error is the number of the first byte outside.
+    pub fn move_into(&mut self, start: u32, bytes: u32) -> Result<(), String> {
+        for value in self.rows.iter_mut().flat_map(|(_, row)| row) {
+            let inside = value.offset.checked_sub(start).filter(|at| at + value.bytes.len() as u32 <= bytes);
+            value.offset = inside.ok_or_else(|| format!("a variable at byte {}", value.offset))?;
+        }
+        Ok(())
+    }
+
     /// Back to the first row.
     pub fn rewind(&mut self) {
         self.next = 0;
@@ -158,7 +167,7 @@ mod tests {
             bit: None,
             ty: 0,
             constant,
-            retain: false,
+            ..Root::default()
         };
         Image {
             types: vec![TypeDesc::Elem(Elem::Int.code())],

@@ -14,13 +14,24 @@ pub struct Schedule {
     intervals: Vec<Option<i64>>,
     events: Vec<Option<Event>>,
     due: Vec<i64>,
-    overruns: Vec<u64>,
+    counts: Vec<Counts>,
+}
+
+/// What became of the releases of a task.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Executions.
+    pub executed: u64,
+    /// Times that the releases of this task met a cycle that still ran: the execution was late, or releases were skipped.
+    pub overruns: u64,
+    /// Releases that were not executed.
+    pub skipped: u64,
 }
 
 /// A BOOL variable whose rising edge releases a task.
 #[derive(Debug)]
 struct Event {
-    offset: usize,
+    offset: u32,
     bit: Option<u8>,
     level: bool,
     rose: bool,
@@ -28,11 +39,10 @@ struct Event {
 
 impl Event {
     fn new((offset, bit): (u32, Option<u8>)) -> Self {
-        Self { offset: offset as usize, bit, level: false, rose: false }
+        Self { offset, bit, level: false, rose: false }
     }
 
-    fn sample(&mut self, memory: &[u8]) {
-        let byte = memory.get(self.offset).copied().unwrap_or(0);
+    fn sample(&mut self, byte: u8) {
         let level = self.bit.map_or(byte != 0, |bit| byte >> bit & 1 != 0);
         self.rose = level && !self.level;
         self.level = level;
@@ -41,13 +51,15 @@ impl Event {
 
 /// The base tick: the greatest common divisor of the intervals.
 pub fn base_tick(tasks: &[Task]) -> i64 {
-    fn gcd(a: i64, b: i64) -> i64 {
-        if b == 0 { a } else { gcd(b, a % b) }
-    }
     match tasks.iter().filter_map(|t| t.interval_ns).reduce(gcd) {
         Some(tick) if tick > 0 => tick,
         _ => DEFAULT_TICK_NS,
     }
+}
+
+/// Greatest common divisor.
+pub fn gcd(a: i64, b: i64) -> i64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 impl Schedule {
@@ -61,19 +73,24 @@ impl Schedule {
             intervals: tasks.iter().map(|t| t.interval_ns.filter(|ns| *ns > 0)).collect(),
             events: tasks.iter().map(|t| t.single.map(Event::new)).collect(),
             due: vec![0; tasks.len()],
-            overruns: vec![0; tasks.len()],
+            counts: vec![Counts::default(); tasks.len()],
         }
     }
 
     /// Reads the variables that release tasks (SINGLE), at the start of a tick. A task with an INTERVAL too runs
     /// periodically while its variable is FALSE.
-    pub fn sample(&mut self, memory: &[u8]) {
-        self.events.iter_mut().flatten().for_each(|event| event.sample(memory));
+    pub fn sample(&mut self, byte: impl Fn(u32) -> u8) {
+        self.events.iter_mut().flatten().for_each(|event| event.sample(byte(event.offset)));
     }
 
-    /// Releases of each task that started late or not at all because cycles took too long.
-    pub fn overruns(&self) -> &[u64] {
-        &self.overruns
+    /// Whether variables release tasks.
+    pub fn has_events(&self) -> bool {
+        self.events.iter().any(Option::is_some)
+    }
+
+    /// Of each task.
+    pub fn counts(&self) -> &[Counts] {
+        &self.counts
     }
 
     /// Calls `run` for each task that is due in a tick, in order; stops at the first error.
@@ -81,10 +98,15 @@ impl Schedule {
         for n in &self.order {
             let n = *n;
             let now = tick.now_ns;
-            let mut releases = tick.late;
+            // What the tick skipped was a release of the tasks that run in every tick.
+            let mut skipped = tick.skipped;
             let (rose, level) = self.events[n].as_ref().map_or((false, false), |e| (e.rose, e.level));
-            if self.events[n].is_some() && !rose && (level || self.intervals[n].is_none()) {
-                continue;
+            if self.events[n].is_some() {
+                // An edge is one release, seen in the tick that reads it.
+                skipped = 0;
+                if !rose && (level || self.intervals[n].is_none()) {
+                    continue;
+                }
             }
             if let Some(interval) = self.intervals[n].filter(|_| !rose) {
                 if now < self.due[n] {
@@ -93,11 +115,12 @@ impl Schedule {
                 // The next due time behind now; releases that a long tick skipped are not made up for.
                 let behind = (now - self.due[n]) / interval;
                 self.due[n] = self.due[n].saturating_add((behind + 1).saturating_mul(interval));
-                releases = behind as u64 + 1;
+                skipped = behind as u64;
             }
-            if tick.late > 0 {
-                self.overruns[n] += releases;
-            }
+            let counts = &mut self.counts[n];
+            counts.executed += 1;
+            counts.skipped += skipped;
+            counts.overruns += u64::from(tick.late || (skipped > 0 && tick.skipped > 0));
             run(n)?;
         }
         Ok(())
@@ -109,7 +132,7 @@ mod tests {
     use super::*;
 
     fn task(name: &str, ms: Option<i64>, priority: u32) -> Task {
-        Task { name: name.into(), interval_ns: ms.map(|m| m * 1_000_000), single: None, priority, watchdog_ns: 1 }
+        Task { name: name.into(), interval_ns: ms.map(|m| m * 1_000_000), priority, ..Task::default() }
     }
 
     fn runs(tasks: &[Task], tick_ms: i64, ticks: i64) -> Vec<String> {
@@ -117,7 +140,7 @@ mod tests {
         (0..ticks)
             .map(|n| {
                 let mut list = Vec::new();
-                let _: Result<(), ()> = schedule.release(Tick { now_ns: n * tick_ms * 1_000_000, late: 0 }, |t| {
+                let _: Result<(), ()> = schedule.release(Tick::at(n * tick_ms * 1_000_000), |t| {
                     list.push(tasks[t].name.clone());
                     Ok(())
                 });
@@ -150,8 +173,8 @@ mod tests {
         let mut schedule = Schedule::new(&tasks);
         let mut tick = |n: i64, bytes: [u8; 4]| {
             let mut list = Vec::new();
-            schedule.sample(&bytes);
-            let _: Result<(), ()> = schedule.release(Tick { now_ns: n * 10_000_000, late: 0 }, |t| {
+            schedule.sample(|at| bytes[at as usize]);
+            let _: Result<(), ()> = schedule.release(Tick::at(n * 10_000_000), |t| {
                 list.push(tasks[t].name.clone());
                 Ok(())
             });
@@ -166,17 +189,19 @@ mod tests {
     }
 
     #[test]
-    fn late_ticks_are_overruns_of_the_tasks_that_were_due() {
+    fn every_release_is_executed_or_skipped() {
         let tasks = [task("t", Some(20), 0), task("slow", Some(1000), 0), task("", None, 0)];
         let mut schedule = Schedule::new(&tasks);
-        let mut tick = |ms: i64, late| {
-            let _: Result<(), ()> = schedule.release(Tick { now_ns: ms * 1_000_000, late }, |_| Ok(()));
+        let mut tick = |ms: i64, skipped, late| {
+            let tick = Tick { skipped, late, ..Tick::at(ms * 1_000_000) };
+            let _: Result<(), ()> = schedule.release(tick, |_| Ok(()));
         };
-        tick(0, 0);
-        tick(10, 0);
+        tick(0, 0, false);
+        tick(10, 0, false);
         // The ticks at 20, 30 and 40 ms were due, the last one runs.
-        tick(40, 3);
-        tick(50, 0);
-        assert_eq!(schedule.overruns(), [2, 0, 3]);
+        tick(40, 2, true);
+        tick(50, 0, false);
+        let counts = |executed, overruns, skipped| Counts { executed, overruns, skipped };
+        assert_eq!(schedule.counts(), [counts(2, 1, 1), counts(1, 0, 0), counts(4, 1, 2)]);
     }
 }

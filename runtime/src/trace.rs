@@ -7,7 +7,7 @@ use std::path::Path;
 /// What is written where.
 pub struct Trace {
     columns: Vec<(String, Leaf)>,
-    out: BufWriter<Box<dyn Write>>,
+    out: BufWriter<Box<dyn Write + Send>>,
     line: String,
     /// One value before it is quoted; both buffers keep their memory.
     cell: String,
@@ -85,7 +85,7 @@ impl Trace {
 }
 
 /// Opens a file for results, `-` is standard output.
-pub(crate) fn create(path: &Path, what: &str) -> Result<Box<dyn Write>, String> {
+pub(crate) fn create(path: &Path, what: &str) -> Result<Box<dyn Write + Send>, String> {
     if path == Path::new("-") {
         return Ok(Box::new(std::io::stdout()));
     }
@@ -105,7 +105,7 @@ fn tolerate(done: std::io::Result<()>) -> Result<(), String> {
 }
 
 /// A field as in RFC 4180.
-fn field(line: &mut String, text: &str) {
+pub(crate) fn field(line: &mut String, text: &str) {
     if text.contains([',', '"', '\n', '\r']) {
         line.push('"');
         line.push_str(&text.replace('"', "\"\""));

@@ -13,7 +13,7 @@ use std::path::Path;
 /// A waveform file.
 pub struct Vcd {
     signals: Vec<Signal>,
-    out: BufWriter<Box<dyn Write>>,
+    out: BufWriter<Box<dyn Write + Send>>,
     line: String,
     cell: String,
     /// Time of the last stamp.
@@ -44,7 +44,7 @@ impl Vcd {
         Self::start(out, image, columns).map_err(|e| crate::trace::failure(&e, "waveform"))
     }
 
-    fn start(out: Box<dyn Write>, image: &Image, columns: Vec<(String, Leaf)>) -> std::io::Result<Self> {
+    fn start(out: Box<dyn Write + Send>, image: &Image, columns: Vec<(String, Leaf)>) -> std::io::Result<Self> {
         let mut out = BufWriter::with_capacity(1 << 16, out);
         writeln!(out, "$timescale 1 ns $end")?;
         let mut scopes: Vec<String> = Vec::new();
@@ -182,8 +182,7 @@ mod tests {
     #[test]
     fn values_stand_where_they_change() {
         let path = std::env::temp_dir().join(format!("plcc-vcd-{}", std::process::id()));
-        let root =
-            |name: &str, offset, ty| Root { name: name.into(), offset, bit: None, ty, constant: false, retain: false };
+        let root = |name: &str, offset, ty| Root { name: name.into(), offset, ty, ..Root::default() };
         let image = Image {
             types: vec![
                 TypeDesc::Elem(Elem::Bool.code()),

@@ -44,11 +44,11 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Starts the thread, unless no task is watched.
+    /// Starts the thread, unless no task is watched. `ready` is called on it first.
     ///
     /// # Safety
     /// `region` must point to a region that lives longer than this value.
-    pub unsafe fn new(region: *mut u8, tasks: &[Task]) -> std::io::Result<Self> {
+    pub unsafe fn new(region: *mut u8, tasks: &[Task], ready: impl FnOnce() + Send + 'static) -> std::io::Result<Self> {
         // SAFETY: the header lies inside every region.
         let flag = unsafe { region.add(DEADLINE_FLAG as usize) }.cast::<u32>();
         let limits_ns: Vec<i64> = tasks.iter().map(|t| t.watchdog_ns).collect();
@@ -64,7 +64,10 @@ impl Watchdog {
             Some(limit) => {
                 let own = Arc::clone(&shared);
                 let look = (limit / 4).clamp(LOOK_EVERY.0, LOOK_EVERY.1);
-                Some(std::thread::Builder::new().name("watchdog".into()).spawn(move || watch(&own, look))?)
+                Some(std::thread::Builder::new().name("watchdog".into()).spawn(move || {
+                    ready();
+                    watch(&own, look);
+                })?)
             }
         };
         Ok(Self { shared, number: 0, thread })
@@ -132,7 +135,7 @@ mod tests {
     use std::time::Instant;
 
     fn task(watchdog_ms: i64) -> Task {
-        Task { name: String::new(), interval_ns: None, single: None, priority: 0, watchdog_ns: watchdog_ms * 1_000_000 }
+        Task { watchdog_ns: watchdog_ms * 1_000_000, ..Task::default() }
     }
 
     /// Spins until the flag is set or a time is over; how long it took.
@@ -148,7 +151,7 @@ mod tests {
     fn flags_a_long_execution_and_spares_the_next_one() {
         let mut mem = Region::new(64);
         // SAFETY: declared before the watchdog, dropped after it.
-        let mut dog = unsafe { Watchdog::new(mem.as_mut_ptr(), &[task(0), task(20)]) }.unwrap();
+        let mut dog = unsafe { Watchdog::new(mem.as_mut_ptr(), &[task(0), task(20)], || ()) }.unwrap();
         dog.start(1);
         let took = spin(&dog.shared, Duration::from_secs(10));
         assert!(took >= Duration::from_millis(20) && took < Duration::from_secs(9), "{took:?}");
@@ -162,7 +165,7 @@ mod tests {
     fn a_task_without_a_watchdog_runs_as_long_as_it_likes() {
         let mut mem = Region::new(64);
         // SAFETY: as above.
-        let mut dog = unsafe { Watchdog::new(mem.as_mut_ptr(), &[task(0), task(5)]) }.unwrap();
+        let mut dog = unsafe { Watchdog::new(mem.as_mut_ptr(), &[task(0), task(5)], || ()) }.unwrap();
         dog.start(0);
         assert!(spin(&dog.shared, Duration::from_millis(60)) >= Duration::from_millis(60));
         assert!(!dog.stop());
@@ -172,7 +175,7 @@ mod tests {
     fn many_short_executions_together_are_not_late() {
         let mut mem = Region::new(64);
         // SAFETY: as above.
-        let mut dog = unsafe { Watchdog::new(mem.as_mut_ptr(), &[task(2000)]) }.unwrap();
+        let mut dog = unsafe { Watchdog::new(mem.as_mut_ptr(), &[task(2000)], || ()) }.unwrap();
         let start = Instant::now();
         while start.elapsed() < Duration::from_millis(60) {
             dog.start(0);

@@ -10,7 +10,8 @@ pub const FAULT_CODE: u32 = 4;
 pub const CLOCK_NS: u32 = 8;
 /// `u32`: index into the source table: where the fault happened.
 pub const FAULT_SOURCE: u32 = 16;
-/// `u32`: region offset of the instance whose code faulted (0 in a function).
+/// `u32`: region offset of the instance whose code faulted; of a function that of the innermost instance that called it. 0
+/// if there is none.
 pub const FAULT_INSTANCE: u32 = 20;
 /// `[i64; 3]`: the offending values; their meaning by fault stands in [`fault`](crate::fault).
 pub const FAULT_OPERANDS: u32 = 24;

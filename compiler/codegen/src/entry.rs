@@ -160,9 +160,6 @@ impl Maker<'_> {
             let known = b.ins().icmp_imm_u(IntCC::UnsignedLessThan, task, env.program.tasks.len() as i64);
             b.ins().brif(known, run, &[], nothing, &[]);
             b.switch_to_block(run);
-            b.ins().store(memory(), now, mem, CLOCK_NS as i32);
-            let zero = b.ins().iconst(types::I32, 0);
-            b.ins().store(memory(), zero, mem, FAULT_CODE as i32);
             let mut switch = Switch::new();
             let mut blocks = Vec::new();
             for (n, entry) in env.program.tasks.iter().enumerate() {
@@ -171,12 +168,17 @@ impl Maker<'_> {
                 blocks.push((block, *entry));
             }
             switch.emit(b, task, nothing);
-            for (block, entry) in blocks {
+            for (n, (block, entry)) in blocks.into_iter().enumerate() {
                 b.switch_to_block(block);
+                let part = env.program.part_of_task(n);
+                let mem = if part.start == 0 { mem } else { b.ins().iadd_imm_u(mem, i64::from(part.start)) };
+                b.ins().store(memory(), now, mem, CLOCK_NS as i32);
+                let zero = b.ins().iconst(types::I32, 0);
+                b.ins().store(memory(), zero, mem, FAULT_CODE as i32);
                 let callee = module.declare_func_in_func(env.ids[entry], b.func);
                 let mut args = vec![mem];
                 if env.shapes[entry].frame {
-                    args.push(b.ins().iadd_imm_u(mem, i64::from(env.program.frame_base)));
+                    args.push(b.ins().iadd_imm_u(mem, i64::from(part.frame_base)));
                 }
                 let call = b.ins().call(callee, &args);
                 let status = b.inst_results(call).first().copied();

@@ -58,6 +58,7 @@ pub fn translate(env: &Env, id: FuncId, context: &mut FunctionBuilderContext) ->
     let tree = Dominators::new(func);
     let b = FunctionBuilder::new(&mut out, context);
     let mut translator = Translator::new(env, func, env.shapes[id], b);
+    translator.region_bytes = env.program.part_of_func(id).bytes;
     translator.entry(!tree.preds[BlockId::from_usize(0)].is_empty(), &tree.order);
     for block in &tree.order {
         translator.block(*block);
@@ -90,6 +91,8 @@ pub struct Translator<'a, 'f> {
     pub(crate) instance: Option<Value>,
     pub(crate) frame: Option<Value>,
     shape: Shape,
+    /// Bytes of the part of the memory that the function works on.
+    region_bytes: u32,
     values: IndexVec<ValueId, Option<Value>>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
@@ -118,6 +121,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             instance,
             frame,
             shape,
+            region_bytes: env.program.region_bytes,
             values: IndexVec::from_vec(vec![None; func.values.len()]),
             blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
             callees: FxHashMap::default(),
@@ -487,7 +491,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn call_text(&mut self, dst: ValueId, func: &'static TextFn, texts: &[TextPlace], args: &[ValueId]) {
-        let size = self.b.ins().iconst(types::I32, i64::from(self.env.program.region_bytes));
+        let size = self.b.ins().iconst(types::I32, i64::from(self.region_bytes));
         let mut values = vec![self.region, size];
         for text in texts {
             values.push(self.packed(text));

@@ -34,10 +34,20 @@ pub enum Command {
     Build(BuildArgs),
     /// Compile and run at once.
     Run(RunArgs),
+    /// Measure cycle times: native code beside the interpreter.
+    Bench(BenchArgs),
     /// Find mistakes and explain them.
     Check(CheckArgs),
     /// Draw a program: its charts as SVG.
     Graph(GraphArgs),
+    /// Show what a retain file holds, or compare it with another one or with a program.
+    Retain {
+        /// What to do.
+        #[command(subcommand)]
+        action: RetainAction,
+    },
+    /// Draw the timing diagram of a trace.
+    Trace(TraceArgs),
     /// Explain a diagnostic code, a standard function or a standard function block.
     Explain {
         /// `E0301`, `LIMIT`, `TON`.
@@ -91,7 +101,7 @@ pub enum MessageFormat {
 }
 
 /// How code is generated.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct CodeArgs {
     /// Safety checks: all, none, or a list of index,division,subrange,pointer,deadline.
     #[arg(long, value_name = "all|none|LIST")]
@@ -173,12 +183,73 @@ pub enum EngineArg {
     Interp,
 }
 
+/// `plcc bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    /// Safety checks: all, none, or a list of index,division,subrange,pointer,deadline.
+    #[arg(long, value_name = "all|none|LIST")]
+    pub checks: Option<String>,
+    /// Cycles from the start that are measured.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub cycles: u64,
+    /// Base tick, as for plcc run.
+    #[arg(long, value_name = "TIME", value_parser = plcc_runtime::cli::parse_duration)]
+    pub interval: Option<i64>,
+    /// Inputs as CSV, as for plcc run.
+    #[arg(long, value_name = "FILE")]
+    pub stimulus: Option<PathBuf>,
+    /// A folder for the report as Markdown, JSON and SVG; without it Markdown goes to standard output.
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// Only run the cycles, between marks that callgrind understands: what plcc starts under valgrind to count instructions.
+    #[arg(long, hide = true)]
+    pub count_instructions: bool,
+}
+
 /// `plcc check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub sources: SourceArgs,
+}
+
+/// `plcc retain`.
+#[derive(Debug, Subcommand)]
+pub enum RetainAction {
+    /// Every retained variable with its type and value.
+    Show {
+        /// The retain file.
+        file: PathBuf,
+    },
+    /// The values that differ in another retain file, or what becomes of the values in a program.
+    Diff {
+        /// The retain file.
+        file: PathBuf,
+        /// Another retain file; or project.toml, source files, folders or globs.
+        #[arg(required = true, value_name = "FILE|project.toml|SOURCES")]
+        with: Vec<String>,
+    },
+}
+
+/// `plcc trace`.
+#[derive(Debug, Args)]
+pub struct TraceArgs {
+    /// The trace, as `--trace` writes it.
+    #[arg(value_name = "FILE.csv")]
+    pub trace: PathBuf,
+    /// The drawing to write; standard output without it.
+    #[arg(long, value_name = "out.svg")]
+    pub svg: Option<PathBuf>,
+    /// Only these columns, in this order.
+    #[arg(long, value_name = "A,B,C")]
+    pub watch: Option<String>,
+    /// Only these cycles.
+    #[arg(long, value_name = "FIRST..LAST")]
+    pub cycles: Option<String>,
 }
 
 /// `plcc graph`.

@@ -15,6 +15,9 @@ mod pipeline;
 mod places;
 mod project;
 mod render;
+mod retain;
+mod statements;
+mod timing;
 
 use clap::Parser;
 use cli::{Cli, Color, Command, MessageFormat, SourceArgs};
@@ -52,8 +55,11 @@ pub fn execute(cli: Cli) -> u8 {
     let result = match cli.command {
         Command::Build(args) => build::build(&args, color),
         Command::Run(args) => run(&args, color),
+        Command::Bench(args) => bench::command::bench(&args, color),
         Command::Check(args) => check(&args.sources, color),
         Command::Graph(args) => graph::graph(&args, color),
+        Command::Retain { action } => retain::retain(&action, color),
+        Command::Trace(args) => timing::trace(&args),
         Command::Explain { name } => explain::page(&name).map(|page| {
             print!("{page}");
             0
@@ -94,15 +100,16 @@ fn run(args: &cli::RunArgs, color: Color) -> Result<u8, Failure> {
         code.opt = code.opt.or(Some(cli::OptArg::None));
     }
     let compiled = pipeline::compile(&checked, app, &project, &parsed, &code, false)?;
-    let mut engine: Box<dyn plcc_runtime::engine::Engine> = match args.engine {
-        cli::EngineArg::Interp => Box::new(engines::Interpreter(plcc_mir::interp::Interp::new(&compiled.program))),
+    let resources = compiled.image.resources.len();
+    let mut engines = match args.engine {
+        cli::EngineArg::Interp => engines::Interpreter::engines(&compiled.program, resources),
         cli::EngineArg::Jit => {
             let code = plcc_codegen::jit::compile(&compiled.program)
                 .unwrap_or_else(|e| plcc_diag::bug!("the code generator refused: {e:?}"));
-            Box::new(engines::Jit::new(code))
+            engines::Jit::engines(code, resources)
         }
     };
-    Ok(plcc_runtime::run::run(&compiled.image, engine.as_mut(), &args.run))
+    Ok(plcc_runtime::run::run(&compiled.image, &mut engines, &args.run))
 }
 
 fn nothing_to_run() -> Failure {

@@ -77,7 +77,7 @@ pub fn check(parsed: &mut Parsed, project: &Project) -> Checked {
     checked
 }
 
-/// layout, lower, verify, optimise, image: the typed form to MIR and what the runtime needs.
+/// layout, lower, verify, optimise of each resource, join, image: the typed form to MIR and what the runtime needs.
 pub fn compile(
     checked: &Checked,
     app: &Application,
@@ -87,27 +87,38 @@ pub fn compile(
     all: bool,
 ) -> Result<Compiled, Failure> {
     let checks = checks(project, code)?;
-    let (mut program, layout) =
-        plcc_mir::lower::lower(&checked.defs, app, 0, checks, all).map_err(|e| too_large(e, &parsed.sources))?;
-    let problems = plcc_mir::verify::verify(&program);
-    if !problems.is_empty() {
-        plcc_diag::bug!(
-            "the verifier found:\n{}\n{}",
-            problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
-            plcc_mir::print::program(&program, None)
-        );
+    let mut resources = Vec::new();
+    for number in 0..app.resources.len() {
+        let defs = app.defs_of(number, &checked.defs);
+        let (mut program, layout) =
+            plcc_mir::lower::lower(&defs, app, number, checks, all).map_err(|e| too_large(e, &parsed.sources))?;
+        let problems = plcc_mir::verify::verify(&program);
+        if !problems.is_empty() {
+            plcc_diag::bug!(
+                "the verifier found:\n{}\n{}",
+                problems.iter().map(|p| format!("{p:?}\n")).collect::<String>(),
+                plcc_mir::print::program(&program, None)
+            );
+        }
+        if code.opt != Some(OptArg::None) {
+            plcc_mir::opt::optimise(&mut program);
+        }
+        resources.push((program, layout));
     }
-    if code.opt != Some(OptArg::None) {
-        plcc_mir::opt::optimise(&mut program);
-    }
-    let image = crate::image::build(&checked.defs, app, &layout, &program, project, &parsed.sources)?;
+    let (program, layouts, home) =
+        plcc_mir::resources::join(&checked.defs, app, resources).map_err(|e| too_large(e, &parsed.sources))?;
+    let memory = crate::image::Memory { layouts: &layouts, home: home.as_ref() };
+    let image = crate::image::build(&checked.defs, app, &memory, &program, project, &parsed.sources)?;
     Ok(Compiled { program, image })
 }
 
 /// Whether the variables fit into memory, for `check`, which generates no code.
 pub fn fits(checked: &Checked, parsed: &Parsed) -> Result<(), Failure> {
     match &checked.app {
-        Some(app) => plcc_mir::lower::fits(&checked.defs, app, 0).map_err(|e| too_large(e, &parsed.sources)),
+        Some(app) => (0..app.resources.len()).try_for_each(|number| {
+            let defs = app.defs_of(number, &checked.defs);
+            plcc_mir::lower::fits(&defs, app, number).map_err(|e| too_large(e, &parsed.sources))
+        }),
         None => Ok(()),
     }
 }

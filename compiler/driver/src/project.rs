@@ -2,7 +2,9 @@
 
 use crate::cli::{ProfileArg, SourceArgs};
 use crate::failure::Failure;
+use plcc_hir::app::Resource;
 use plcc_hir::{Profile, Selection, TaskSelection};
+use plcc_runtime::image::{Defaults, Task};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,6 +27,42 @@ pub struct Project {
     pub safe_state: Vec<(String, String)>,
     /// `[retain] file`.
     pub retain_file: Option<PathBuf>,
+    /// What the program does where no flag says it: `[runtime]`, `[io] driver`, `[retain] flush`.
+    pub defaults: Defaults,
+    /// `[runtime]` watchdog and deadline of all tasks.
+    all_tasks: TaskTimes,
+    /// `[runtime.tasks.NAME]`.
+    by_task: Vec<(String, TaskTimes)>,
+}
+
+/// Longest execution and reaction time of a task, nanoseconds.
+#[derive(Debug, Clone, Copy, Default)]
+struct TaskTimes {
+    watchdog_ns: Option<i64>,
+    deadline_ns: Option<i64>,
+}
+
+impl Project {
+    /// What `[runtime]` says of a task: watchdog and deadline, nanoseconds.
+    pub fn of_task(&self, resource: &str, task: &str) -> (Option<i64>, Option<i64>) {
+        let long = format!("{resource}.{task}");
+        let is = |name: &str| name.eq_ignore_ascii_case(task) || name.eq_ignore_ascii_case(&long);
+        let own = self.by_task.iter().find(|(name, _)| is(name)).map_or_else(TaskTimes::default, |(_, times)| *times);
+        (own.watchdog_ns.or(self.all_tasks.watchdog_ns), own.deadline_ns.or(self.all_tasks.deadline_ns))
+    }
+
+    /// Whether `[runtime.tasks]` names tasks that exist.
+    pub fn check_tasks(&self, tasks: &[Task], resources: &[Resource]) -> Result<(), Failure> {
+        let long = |t: &Task| format!("{}.{}", resources[t.resource as usize].name, t.name);
+        for (name, _) in &self.by_task {
+            if !tasks.iter().any(|t| name.eq_ignore_ascii_case(&t.name) || name.eq_ignore_ascii_case(&long(t))) {
+                let hint = plcc_hir::similar(name, tasks.iter().map(|t| t.name.as_str()));
+                let hint = hint.map(|h| format!("; did you mean `{h}`?")).unwrap_or_default();
+                return Err(Failure::usage(format!("[runtime.tasks.{name}]: there is no task `{name}`{hint}")));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// `[build]`.
@@ -65,6 +103,32 @@ struct File {
     retain: Retain,
     #[serde(default)]
     io: Io,
+    #[serde(default)]
+    runtime: Runtime,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Runtime {
+    on_fault: Option<OnFaultArg>,
+    watchdog: Option<String>,
+    deadline: Option<String>,
+    #[serde(default)]
+    tasks: BTreeMap<String, RuntimeTask>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum OnFaultArg {
+    Stop,
+    RestartTask,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RuntimeTask {
+    watchdog: Option<String>,
+    deadline: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -91,11 +155,13 @@ struct Library {
 #[serde(deny_unknown_fields)]
 struct Retain {
     file: Option<PathBuf>,
+    flush: Option<String>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Io {
+    driver: Option<String>,
     #[serde(default)]
     safe_state: BTreeMap<String, String>,
 }
@@ -107,6 +173,7 @@ struct TaskTable {
     #[serde(default)]
     priority: u32,
     watchdog: Option<String>,
+    deadline: Option<String>,
     programs: Vec<String>,
 }
 
@@ -164,15 +231,11 @@ fn from_file(path: &Path, flag: Option<ProfileArg>) -> Result<Project, Failure> 
     }
     for (name, table) in file.tasks {
         let task: TaskTable = table.try_into().map_err(|e: toml::de::Error| bad_toml(path, &e))?;
-        let duration = |key: &str, text: &Option<String>| match text {
-            None => Ok(None),
-            Some(text) => plcc_runtime::cli::parse_duration(text)
-                .map(Some)
-                .map_err(|e| Failure::usage(format!("{}: [tasks.{name}] {key}: {e}", path.display()))),
-        };
+        let duration = |key: &str, text: &Option<String>| duration(path, &format!("[tasks.{name}] {key}"), text);
         project.selection.tasks.push(TaskSelection {
             interval_ns: duration("interval", &task.interval)?,
             watchdog_ns: duration("watchdog", &task.watchdog)?,
+            deadline_ns: duration("deadline", &task.deadline)?,
             priority: task.priority,
             programs: task.programs,
             name,
@@ -180,7 +243,28 @@ fn from_file(path: &Path, flag: Option<ProfileArg>) -> Result<Project, Failure> 
     }
     project.safe_state = file.io.safe_state.into_iter().collect();
     project.retain_file = file.retain.file;
+    project.defaults = Defaults {
+        restart_task: matches!(file.runtime.on_fault, Some(OnFaultArg::RestartTask)),
+        io: file.io.driver,
+        retain_flush_ns: duration(path, "[retain] flush", &file.retain.flush)?,
+    };
+    let times = |place: &str, watchdog: &Option<String>, deadline: &Option<String>| {
+        Ok::<_, Failure>(TaskTimes {
+            watchdog_ns: duration(path, &format!("{place} watchdog"), watchdog)?,
+            deadline_ns: duration(path, &format!("{place} deadline"), deadline)?,
+        })
+    };
+    project.all_tasks = times("[runtime]", &file.runtime.watchdog, &file.runtime.deadline)?;
+    for (name, task) in &file.runtime.tasks {
+        let times = times(&format!("[runtime.tasks.{name}]"), &task.watchdog, &task.deadline)?;
+        project.by_task.push((name.clone(), times));
+    }
     Ok(project)
+}
+
+fn duration(path: &Path, place: &str, text: &Option<String>) -> Result<Option<i64>, Failure> {
+    let parsed = text.as_deref().map(plcc_runtime::cli::parse_duration).transpose();
+    parsed.map_err(|e| Failure::usage(format!("{}: {place}: {e}", path.display())))
 }
 
 /// toml's message with its line, and what was probably meant by an unknown key.

@@ -1,10 +1,11 @@
 //! What is to run: resources, tasks, program instances (from a CONFIGURATION, or one PROGRAM without).
 
 use crate::body::{Expr, Place};
-use crate::defs::{PouId, VarId};
+use crate::defs::{Defs, PouId, VarId};
 use crate::init::Init;
 use plcc_diag::Span;
 use smol_str::SmolStr;
+use std::borrow::Cow;
 
 /// The application.
 #[derive(Debug, Clone, Default)]
@@ -42,6 +43,29 @@ pub struct Resource {
     pub tasks: Vec<Task>,
     /// In order of declaration.
     pub programs: Vec<Program>,
+    /// Its own globals that stand in the place of another resource's of the same name and type: that one, the own.
+    pub globals: Vec<(VarId, VarId)>,
+}
+
+impl Application {
+    /// The declarations as a resource sees them: a global that several resources have is its own.
+    pub fn defs_of<'d>(&self, resource: usize, defs: &'d Defs) -> Cow<'d, Defs> {
+        let globals = &self.resources[resource].globals;
+        if globals.is_empty() {
+            return Cow::Borrowed(defs);
+        }
+        let mut own = defs.clone();
+        for (name, var) in globals {
+            own.vars[*name] = defs.vars[*var].clone();
+        }
+        Cow::Owned(own)
+    }
+
+    /// Whether the code of a resource can use a global.
+    pub fn has_global(&self, resource: usize, var: VarId, defs: &Defs) -> bool {
+        let own = |v: VarId| defs.vars[v].resource.is_none_or(|r| r as usize == resource);
+        own(var) || self.resources[resource].globals.iter().any(|(name, _)| *name == var)
+    }
 }
 
 /// A task.
@@ -57,6 +81,8 @@ pub struct Task {
     pub priority: u32,
     /// Longest execution in nanoseconds of real time.
     pub watchdog_ns: i64,
+    /// The reaction time that it has to keep, nanoseconds.
+    pub deadline_ns: Option<i64>,
 }
 
 /// A program instance.

@@ -30,10 +30,12 @@ pub(crate) fn collect<'a>(cx: &mut Cx<'a>, units: &[Unit<'a>]) {
     for unit in units {
         for item in &unit.ast.items {
             match item {
-                ast::Item::Globals(section) => declare_globals(cx, section),
+                ast::Item::Globals(section) => declare_globals(cx, section, None),
                 ast::Item::Config(config) => {
-                    let resources = config.resources.iter().flat_map(|r| &r.sections);
-                    config.sections.iter().chain(resources).for_each(|s| declare_globals(cx, s));
+                    config.sections.iter().for_each(|s| declare_globals(cx, s, None));
+                    for (n, resource) in config.resources.iter().enumerate() {
+                        resource.sections.iter().for_each(|s| declare_globals(cx, s, Some(n as u32)));
+                    }
                 }
                 _ => {}
             }
@@ -213,6 +215,8 @@ pub(crate) fn new_var<'a>(
         owner,
         constant: false,
         retain: false,
+        non_retain: false,
+        resource: None,
         address: None,
         open_address: None,
         init: Init::Default,
@@ -229,7 +233,8 @@ fn qualify(cx: &mut Cx, var: VarId, section: &ast::VarSection) {
         match qualifier {
             ast::Qualifier::Constant => cx.defs.vars[var].constant = true,
             ast::Qualifier::Retain | ast::Qualifier::Persistent => cx.defs.vars[var].retain = true,
-            ast::Qualifier::NonRetain | ast::Qualifier::Access => {}
+            ast::Qualifier::NonRetain => cx.defs.vars[var].non_retain = true,
+            ast::Qualifier::Access => {}
         }
     }
 }
@@ -249,7 +254,8 @@ fn locate(cx: &mut Cx, var: VarId, decl: &ast::VarDecl) {
     }
 }
 
-fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
+/// VAR_GLOBALs; `resource` is the number of the RESOURCE whose they are.
+fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection, resource: Option<u32>) {
     match section.kind {
         ast::SectionKind::Global => {}
         // Read by `config`.
@@ -265,7 +271,15 @@ fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
     for decl in &section.vars {
         for name in &decl.names {
             let key = fold(&name.text);
-            if let Some(&first) = cx.globals.get(&key) {
+            // Each RESOURCE may have a global of a name: there the name means its own.
+            let first = cx.globals.get(&key).copied();
+            let taken = first.filter(|first| {
+                let same_name =
+                    std::iter::once(*first).chain(cx.resource_globals.iter().filter(|g| g.0 == *first).map(|g| g.1));
+                resource.is_none()
+                    || same_name.into_iter().any(|v| [None, resource].contains(&cx.defs.vars[v].resource))
+            });
+            if let Some(first) = taken {
                 duplicate(cx, "global variable", name, cx.defs.vars[first].span);
                 continue;
             }
@@ -273,8 +287,14 @@ fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection) {
                 new_var(cx, name.text.clone(), name.span, Section::Global, None, Some((&decl.ty, decl.init.as_ref())));
             qualify(cx, var, section);
             locate(cx, var, decl);
-            cx.defs.globals.push(var);
-            cx.globals.insert(key, var);
+            cx.defs.vars[var].resource = resource;
+            match first {
+                Some(first) => cx.resource_globals.push((first, var)),
+                None => {
+                    cx.defs.globals.push(var);
+                    cx.globals.insert(key, var);
+                }
+            }
         }
     }
 }
@@ -302,7 +322,7 @@ fn declare_vars<'a>(cx: &mut Cx<'a>, id: PouId, pou: &'a ast::Pou) {
             }
             // CODESYS sources and some PROGRAMs declare globals inside a POU; the standard allows VAR_ACCESS in programs.
             ast::SectionKind::Global if pou.kind == ast::PouKind::Program => {
-                declare_globals(cx, section);
+                declare_globals(cx, section, None);
                 continue;
             }
             ast::SectionKind::Global | ast::SectionKind::Config | ast::SectionKind::Access => {

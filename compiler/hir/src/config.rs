@@ -34,6 +34,8 @@ pub struct TaskSelection {
     pub priority: u32,
     /// Longest execution, nanoseconds.
     pub watchdog_ns: Option<i64>,
+    /// The reaction time that it has to keep, nanoseconds.
+    pub deadline_ns: Option<i64>,
     /// Names of PROGRAMs.
     pub programs: Vec<String>,
 }
@@ -100,6 +102,7 @@ fn without_configuration(cx: &mut Cx, selection: &Selection) -> Option<Applicati
                 single: None,
                 priority: task.priority,
                 watchdog_ns: task.watchdog_ns.unwrap_or(DEFAULT_WATCHDOG_NS),
+                deadline_ns: task.deadline_ns,
             });
             for name in &task.programs {
                 match find(cx, name) {
@@ -148,26 +151,27 @@ fn free_task() -> Task {
         single: None,
         priority: u32::MAX,
         watchdog_ns: DEFAULT_WATCHDOG_NS,
+        deadline_ns: None,
     }
 }
 
 fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<Application> {
     let mut app = Application { name: config.name.text.clone(), resources: Vec::new(), access: Vec::new() };
-    if config.resources.len() > 1 {
-        cx.push(
-            Diagnostic::new(
-                codes::NOT_YET,
-                config.resources[1].span.before(),
-                "several RESOURCEs are not implemented yet",
-            )
-            .help("put all programs into one RESOURCE for now"),
-        );
-        return None;
-    }
     for decl in &config.resources {
         let resource = resource(cx, decl);
+        if let (Some(name), true) =
+            (&decl.name, app.resources.iter().any(|r| r.name.eq_ignore_ascii_case(&resource.name)))
+        {
+            cx.push(Diagnostic::new(
+                codes::DUPLICATE_NAME,
+                name.span,
+                format!("resource `{}` is declared twice", name.text),
+            ));
+            return None;
+        }
         app.resources.push(resource);
     }
+    crate::resources::check(cx, &mut app);
     crate::var_config::apply(cx, config, &mut app);
     crate::var_config::report_open(cx, &app);
     if config.resources.iter().all(|r| r.programs.is_empty()) {
@@ -185,6 +189,7 @@ fn resource<'a>(cx: &mut Cx<'a>, decl: &'a ast::Resource) -> Resource {
         name: decl.name.as_ref().map(|n| n.text.clone()).unwrap_or_default(),
         tasks: Vec::new(),
         programs: Vec::new(),
+        globals: Vec::new(),
     };
     for task in &decl.tasks {
         let checked = self::task(cx, task);
@@ -244,6 +249,7 @@ fn task<'a>(cx: &mut Cx<'a>, decl: &'a ast::TaskDecl) -> Task {
         single: None,
         priority: 0,
         watchdog_ns: DEFAULT_WATCHDOG_NS,
+        deadline_ns: None,
     };
     for (name, value) in &decl.properties {
         match name.text.to_ascii_uppercase().as_str() {

@@ -89,6 +89,9 @@ pub(crate) struct Cx<'a> {
     /// Files that are part of plcc: their names mean what plcc declares, whatever the user declares.
     pub builtin_files: FxHashSet<FileId>,
     pub globals: FxHashMap<SmolStr, VarId>,
+    /// VAR_GLOBALs of a RESOURCE whose name an earlier RESOURCE has too: that one's, which the name means in bodies, and
+    /// the own.
+    pub resource_globals: Vec<(VarId, VarId)>,
     pub pous: FxHashMap<SmolStr, PouId>,
     pub types: FxHashMap<SmolStr, usize>,
     pub type_slots: Vec<TypeSlot<'a>>,
@@ -134,6 +137,7 @@ impl<'a> Cx<'a> {
             files: units.iter().map(|u| (u.file, u.profile)).collect(),
             builtin_files: units.iter().filter(|u| u.builtin).map(|u| u.file).collect(),
             globals: FxHashMap::default(),
+            resource_globals: Vec::new(),
             pous: FxHashMap::default(),
             types: FxHashMap::default(),
             type_slots: Vec::new(),

@@ -120,6 +120,10 @@ pub struct Var {
     pub constant: bool,
     /// RETAIN or PERSISTENT.
     pub retain: bool,
+    /// NON_RETAIN: not kept in an instance that is RETAIN either.
+    pub non_retain: bool,
+    /// A VAR_GLOBAL of a RESOURCE: its number in the CONFIGURATION.
+    pub resource: Option<u32>,
     /// `AT %..`.
     pub address: Option<Address>,
     /// `AT %I*`: the area; each instance gets its address from VAR_CONFIG.

@@ -35,6 +35,7 @@ mod place;
 pub mod print;
 mod references;
 mod resolve;
+mod resources;
 pub mod rules;
 pub mod shape;
 mod sizes;

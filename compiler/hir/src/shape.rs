@@ -26,6 +26,8 @@ pub struct Shape {
     pub references: bool,
     /// A variable inside is RETAIN by its own declaration.
     pub retain: bool,
+    /// A variable inside is NON_RETAIN by its own declaration.
+    pub non_retain: bool,
     /// The default initial value is not all zero bytes.
     pub initialised: bool,
 }
@@ -39,8 +41,15 @@ impl Default for Shape {
 
 impl Shape {
     /// Nothing.
-    pub const EMPTY: Shape =
-        Shape { bytes: 0, align: 1, address_taken: false, references: false, retain: false, initialised: false };
+    pub const EMPTY: Shape = Shape {
+        bytes: 0,
+        align: 1,
+        address_taken: false,
+        references: false,
+        retain: false,
+        non_retain: false,
+        initialised: false,
+    };
 
     fn scalar(bytes: u32) -> Self {
         Self { bytes: u64::from(bytes), align: u64::from(bytes), ..Self::EMPTY }
@@ -59,6 +68,7 @@ impl Shape {
         self.address_taken |= part.address_taken;
         self.references |= part.references;
         self.retain |= part.retain;
+        self.non_retain |= part.non_retain;
     }
 
     fn padded(mut self) -> Self {
@@ -204,6 +214,7 @@ impl Shapes {
                     self.members[id] = Some(shape.push(part));
                     shape.address_taken |= address_taken(var);
                     shape.retain |= var.retain;
+                    shape.non_retain |= var.non_retain;
                     shape.initialised |= var.section != Section::InOut && !self.init_is_zero(defs, var.ty, &var.init);
                 }
             }

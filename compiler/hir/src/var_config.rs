@@ -136,6 +136,10 @@ fn access<'a>(cx: &mut Cx<'a>, decl: &'a ast::VarDecl, app: &mut Application) {
         if path.last().is_some_and(|var| !same_type(cx, decl, *var)) {
             return;
         }
+        if app.resources.len() > 1 {
+            text.push_str(&app.resources[program.0].name);
+            text.push('.');
+        }
         text.push_str(&app.resources[program.0].programs[program.1].name);
         for var in path {
             text.push('.');

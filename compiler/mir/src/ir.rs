@@ -31,7 +31,7 @@ index_vec::define_index_type! {
 /// The most passes of nested loops between two [`Inst::Poll`]s.
 pub const UNPOLLED_PASSES: u64 = 4096;
 
-/// All code of one resource.
+/// All code of one resource, or of several that were joined ([`resources`](crate::resources)).
 #[derive(Debug, Clone, Default)]
 pub struct Program {
     /// Bodies of POUs, then one entry per task.
@@ -50,6 +50,43 @@ pub struct Program {
     pub initial: Vec<Segment>,
     /// Byte ranges (start, length) that a warm start keeps; sorted, disjoint.
     pub retain: Vec<(u32, u32)>,
+    /// Several resources joined: the part of each, in order. Empty for one resource, whose part is the region.
+    pub parts: Vec<Part>,
+}
+
+/// What one resource has of a joined program. Its code counts region offsets from the part's start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// First byte in the memory of all resources.
+    pub start: u32,
+    /// Bytes; a multiple of 64.
+    pub bytes: u32,
+    /// Where the frames of its tasks start, from the part's start.
+    pub frame_base: u32,
+    /// Number of its first function.
+    pub first_func: FuncId,
+    /// Number of its first task.
+    pub first_task: usize,
+    /// Its first row of the source table.
+    pub first_source: SourceId,
+}
+
+impl Program {
+    /// The part in which a task runs.
+    pub fn part_of_task(&self, task: usize) -> Part {
+        self.parts.iter().rfind(|p| p.first_task <= task).copied().unwrap_or_else(|| self.whole())
+    }
+
+    /// The part in which a function runs.
+    pub fn part_of_func(&self, func: FuncId) -> Part {
+        self.parts.iter().rfind(|p| p.first_func <= func).copied().unwrap_or_else(|| self.whole())
+    }
+
+    fn whole(&self) -> Part {
+        let (bytes, frame_base) = (self.region_bytes, self.frame_base);
+        let (first_func, first_source) = (FuncId::from_usize(0), SourceId::from_usize(0));
+        Part { start: 0, bytes, frame_base, first_func, first_task: 0, first_source }
+    }
 }
 
 /// Bytes of the region at a cold start.

@@ -52,6 +52,19 @@ pub enum Slot {
     Frame(u32),
 }
 
+/// A value at an address: of a variable `AT`, or used directly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Unit {
+    /// Index of the area.
+    pub area: usize,
+    /// First byte in the area.
+    pub byte: u32,
+    /// Bytes of one value; 0 for a bit.
+    pub bytes: u32,
+    /// How many values lie one behind the other.
+    pub count: u32,
+}
+
 /// A range of the region.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Range {
@@ -82,6 +95,8 @@ pub struct Layout {
     /// First byte of each program instance of the resource.
     programs: Vec<u32>,
     areas: [Range; 3],
+    /// What is located or used directly, as the program reads and writes it.
+    pub units: Vec<Unit>,
     /// The part of the region that references may reach.
     pub addressable: Range,
     /// Bytes may be read under another type than they were written: by a reference, a union, an overlapping address.
@@ -127,6 +142,7 @@ impl Layout {
         placer.located(&located);
         placer.align(16)?;
         let mut layout = placer.layout;
+        layout.units.clone_from(&located.units);
         layout.constants = Range { start: placer.cursor as u32, bytes: 0 };
         layout.aliasing = layout.addressable.bytes > 0
             || defs.structs.iter().any(|s| s.union)
@@ -240,6 +256,7 @@ struct Located {
     vars: Vec<VarId>,
     /// Bytes and whether an address in it is taken, by area.
     extents: [(u64, bool); 3],
+    units: Vec<Unit>,
 }
 
 /// A PROGRAM with instances, of which some variables lie in the addressable part.
@@ -322,11 +339,14 @@ impl Placer<'_> {
         let declared = vars.iter().filter_map(|id| {
             let var = &self.defs.vars[*id];
             let bytes = self.layout.shapes.of(self.defs, var.ty).bytes;
-            var.address.map(|a| (a, bytes, self.layout.is_addressable(self.defs, *id), Some(*id)))
+            var.address.map(|a| (a, bytes, self.layout.is_addressable(self.defs, *id), Some(*id), var.ty))
         });
-        let direct =
-            reach.addresses.iter().map(|a| (a.address, self.layout.shapes.of(self.defs, a.ty).bytes, a.taken, None));
-        for (address, bytes, taken, var) in declared.chain(direct) {
+        let mut units = Vec::new();
+        let direct = reach
+            .addresses
+            .iter()
+            .map(|a| (a.address, self.layout.shapes.of(self.defs, a.ty).bytes, a.taken, None, a.ty));
+        for (address, bytes, taken, var, ty) in declared.chain(direct) {
             let bytes = if address.bit.is_some() { 1 } else { bytes };
             let end = u64::from(address.byte) + bytes;
             if end > MAX_REGION_BYTES {
@@ -335,11 +355,26 @@ impl Placer<'_> {
                     None => TooLarge { what: "a directly used address".to_string(), bytes: end, span: None },
                 });
             }
-            let extent = &mut extents[address.area as usize];
+            let area = address.area as usize;
+            if address.bit.is_some() {
+                units.push(Unit { area, byte: address.byte, bytes: 0, count: 1 });
+            } else {
+                self.units_of(area, address.byte, ty, &mut units);
+            }
+            let extent = &mut extents[area];
             extent.0 = extent.0.max(end.next_multiple_of(8));
             extent.1 |= taken;
         }
-        Ok(Located { vars, extents })
+        units.sort_unstable();
+        units.dedup();
+        Ok(Located { vars, extents, units })
+    }
+
+    /// The values that a located variable consists of.
+    fn units_of(&self, area: usize, byte: u32, ty: TypeId, units: &mut Vec<Unit>) {
+        crate::resources::values(self.defs, &self.layout.shapes, ty, byte, &mut |byte, bytes, count| {
+            units.push(Unit { area, byte, bytes, count });
+        });
     }
 
     fn place_areas(&mut self, located: &Located, addressable: bool) -> Result<(), TooLarge> {

@@ -9,5 +9,6 @@ pub mod lower;
 mod operands;
 pub mod opt;
 pub mod print;
+pub mod resources;
 pub mod verify;
 pub mod visit;

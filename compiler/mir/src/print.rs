@@ -17,6 +17,9 @@ pub fn program(program: &Program, position: Option<Position>) -> String {
     let tasks: Vec<String> = program.tasks.iter().map(|t| callee(program, *t)).collect();
     let _ = writeln!(out, "region {} bytes, frames from {}", program.region_bytes, program.frame_base);
     let _ = writeln!(out, "tasks: {}", if tasks.is_empty() { "none".into() } else { tasks.join(", ") });
+    for part in &program.parts {
+        let _ = writeln!(out, "part at {}: {} bytes, frames from {}", part.start, part.bytes, part.frame_base);
+    }
     for segment in &program.initial {
         let _ = write!(out, "initial {}:", segment.offset);
         for byte in segment.bytes.iter().take(32) {

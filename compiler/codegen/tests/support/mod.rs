@@ -56,6 +56,7 @@ pub fn program(funcs: Vec<Func>, tasks: usize) -> Program {
         addressable: (0, 0),
         initial: Vec::new(),
         retain: Vec::new(),
+        parts: Vec::new(),
     };
     check(&program);
     program

@@ -103,6 +103,45 @@ R.P.z AT %IX0.1 : BOOL;\n\
 END_VAR\n\
 END_CONFIGURATION\n\
 ```\n";
+    FOREIGN_GLOBAL "E0510" Error "a global of another RESOURCE" "\
+A VAR_GLOBAL of a RESOURCE exists in that RESOURCE only. What several resources use stands in the CONFIGURATION; or each\n\
+RESOURCE has its own, of the same name and type.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR_EXTERNAL level : INT; END_VAR\n\
+level := level + 1;\n\
+END_PROGRAM\n\
+CONFIGURATION C\n\
+RESOURCE A ON PLC\n\
+VAR_GLOBAL level : INT; END_VAR\n\
+PROGRAM P : Main;\n\
+END_RESOURCE\n\
+RESOURCE B ON PLC\n\
+PROGRAM P : Main;\n\
+END_RESOURCE\n\
+END_CONFIGURATION\n\
+```\n";
+    SHARED_REFERENCE "E0511" Error "resources cannot share a reference" "\
+Resources work on copies of the CONFIGURATION's globals, each in a memory of its own: a reference of one means nothing in\n\
+the other. Share the value, or declare the variable in one RESOURCE.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR_EXTERNAL p : REF_TO INT; END_VAR\n\
+VAR x : INT; END_VAR\n\
+p := REF(x);\n\
+END_PROGRAM\n\
+CONFIGURATION C\n\
+VAR_GLOBAL p : REF_TO INT; END_VAR\n\
+RESOURCE A ON PLC\n\
+PROGRAM P : Main;\n\
+END_RESOURCE\n\
+RESOURCE B ON PLC\n\
+PROGRAM P : Main;\n\
+END_RESOURCE\n\
+END_CONFIGURATION\n\
+```\n";
     OPEN_ADDRESS "W0509" Warning "a variable was left without its address" "\
 `AT %I*` leaves the address to the VAR_CONFIG of the CONFIGURATION, one for each instance. Without one the variable is connected\n\
 to nothing.\n\

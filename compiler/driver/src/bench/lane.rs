@@ -90,7 +90,7 @@ impl<E: Engine> Cycle for OneTask<E> {
     }
 
     fn execute(&mut self, cycle: u64) -> u32 {
-        self.engine.scan(&mut self.region, 0, cycle as i64 * self.interval_ns)
+        self.engine.scan(&mut self.region.whole(), 0, cycle as i64 * self.interval_ns)
     }
 
     fn memory(&self) -> &Region {
@@ -149,9 +149,9 @@ impl<E: Engine> Cycle for AllTasks<E> {
     fn execute(&mut self, cycle: u64) -> u32 {
         let Self { engine, region, schedule, interval_ns, faulted, .. } = self;
         let now_ns = cycle as i64 * *interval_ns;
-        schedule.sample(region.as_slice());
-        let ran = schedule.release(Tick { now_ns, late: 0 }, |task| {
-            let status = engine.scan(region, task as u32, now_ns);
+        schedule.sample(|at| region.as_slice().get(at as usize).copied().unwrap_or(0));
+        let ran = schedule.release(Tick::at(now_ns), |task| {
+            let status = engine.scan(&mut region.whole(), task as u32, now_ns);
             *faulted = task;
             if status == 0 { Ok(()) } else { Err(status) }
         });

@@ -8,7 +8,7 @@ mod decode;
 mod exec;
 mod op;
 
-use crate::ir::{FuncId, Program};
+use crate::ir::{FuncId, Part, Program};
 use op::Code;
 use plcc_stdlib::region::{CLOCK_NS, FAULT_CODE, HEADER_BYTES};
 use std::ops::Range;
@@ -18,7 +18,8 @@ pub struct Interp {
     code: Code,
     tasks: Vec<FuncId>,
     region_bytes: usize,
-    frame_base: u32,
+    /// By task.
+    parts: Vec<Part>,
     cold: Vec<InitStep>,
     warm: Vec<InitStep>,
     registers: Vec<u64>,
@@ -35,7 +36,7 @@ impl Interp {
             code,
             tasks: program.tasks.clone(),
             region_bytes: program.region_bytes as usize,
-            frame_base: program.frame_base,
+            parts: (0..program.tasks.len()).map(|n| program.part_of_task(n)).collect(),
             cold: init_steps(program, true),
             warm: init_steps(program, false),
         }
@@ -71,11 +72,36 @@ impl Interp {
     /// # Panics
     /// If `mem` is shorter than the region or not aligned to 4 bytes, and on code that leaves the region (a compiler bug).
     pub fn scan(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> u32 {
-        let mem = &mut mem[..self.region_bytes.max(HEADER_BYTES as usize)];
-        let Some(&entry) = self.tasks.get(task as usize) else { return 0 };
+        let Some(part) = self.parts.get(task as usize) else { return 0 };
+        let (start, bytes) = (part.start as usize, part.bytes.max(HEADER_BYTES) as usize);
+        self.scan_part(&mut mem[start..start + bytes], task, now_ns)
+    }
+
+    /// The same with the part of the task's resource alone.
+    ///
+    /// # Panics
+    /// As [`Interp::scan`].
+    pub fn scan_part(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> u32 {
+        self.execute::<false>(mem, task, now_ns).0
+    }
+
+    /// The same, and how many operations it took.
+    ///
+    /// # Panics
+    /// As [`Interp::scan`].
+    pub fn scan_counted(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> (u32, u64) {
+        self.execute::<true>(mem, task, now_ns)
+    }
+
+    fn execute<const COUNT: bool>(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> (u32, u64) {
+        let Some(&entry) = self.tasks.get(task as usize) else { return (0, 0) };
+        let part = self.parts[task as usize];
+        let mem = &mut mem[..part.bytes.max(HEADER_BYTES) as usize];
         mem[CLOCK_NS as usize..][..8].copy_from_slice(&now_ns.to_le_bytes());
         mem[FAULT_CODE as usize..][..4].fill(0);
-        exec::run(&self.code, &mut self.registers, &mut self.calls, mem, entry, self.frame_base)
+        let (registers, calls, mut operations) = (&mut self.registers, &mut self.calls, 0);
+        let status = exec::run::<COUNT>(&self.code, registers, calls, mem, entry, part.frame_base, &mut operations);
+        (status, operations)
     }
 }
 

@@ -1,7 +1,8 @@
 //! The byte ranges that a warm start keeps (semantics.md \[S7\]).
 //!
 //! RETAIN variables of programs and globals, and inside instances of function blocks those that the block declares so; an
-//! instance that is RETAIN itself keeps all its variables. References are never kept.
+//! instance that is RETAIN itself keeps all its variables but those that the block declares NON_RETAIN. References are never
+//! kept.
 
 use super::Layout;
 use plcc_hir::app::Resource;
@@ -40,7 +41,8 @@ impl Walk<'_> {
     /// A variable of the instance at `base`; `all`: the instance is RETAIN.
     fn variable(&mut self, id: VarId, base: u32, all: bool) {
         let var = &self.defs.vars[id];
-        if matches!(var.section, Section::InOut | Section::Temp) || var.constant {
+        // What says NON_RETAIN is not kept in an instance that is RETAIN either.
+        if matches!(var.section, Section::InOut | Section::Temp) || var.constant || var.non_retain {
             return;
         }
         let all = all || var.retain;
@@ -57,7 +59,7 @@ impl Walk<'_> {
         if !all && !shape.retain {
             return;
         }
-        if all && !shape.references {
+        if all && !shape.references && !shape.non_retain {
             self.push(offset, shape.bytes as u32);
             return;
         }

@@ -27,6 +27,7 @@ use crate::ir::{FuncId, Program, Source, SourceId};
 use crate::layout::{Layout, TooLarge};
 use index_vec::IndexVec;
 use init::{Constants, Image};
+pub use path::of_place;
 use plcc_hir::app::Application;
 use plcc_hir::{Defs, PouId};
 use reach::Reach;

@@ -6,7 +6,7 @@ use plcc_hir::{Defs, Type, TypeId, Types};
 use std::fmt::Write;
 
 /// The first `steps` steps of a place: `m.axis[3].speed`, `p^.next`; an index that is no constant is `..`.
-pub(super) fn of_place(defs: &Defs, place: &Place, steps: usize) -> String {
+pub fn of_place(defs: &Defs, place: &Place, steps: usize) -> String {
     let (mut text, mut ty) = match &place.root {
         Root::Var(id) => (defs.vars[*id].name.to_string(), Some(defs.vars[*id].ty)),
         Root::Deref(reference) => (format!("{}^", of_expr(defs, reference)), target(defs, Some(reference.ty))),

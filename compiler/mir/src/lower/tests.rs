@@ -57,6 +57,8 @@ impl Test {
             owner: Some(pou),
             constant: false,
             retain: false,
+            non_retain: false,
+            resource: None,
             address: None,
             open_address: None,
             init: Init::Default,

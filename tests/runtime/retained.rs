@@ -1,0 +1,128 @@
+//! Retained values: cold and warm starts, kill -9, `plcc retain`.
+
+use crate::Plant;
+use std::time::Duration;
+
+/// Two values that belong together, spread over 4,000 elements, and what is not kept.
+const SETS: &str = "
+TYPE Mode : (Idle, Filling, Heating); END_TYPE
+FUNCTION_BLOCK Meter
+VAR n : LINT; END_VAR
+VAR NON_RETAIN volatile : LINT; END_VAR
+VAR RETAIN own : LINT; END_VAR
+n := n + 1;
+volatile := volatile + 1;
+own := own + 1;
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR RETAIN n : LINT; list : ARRAY [1..4000] OF LINT; meter : Meter; mode : Mode; name : STRING[8] := 'start'; END_VAR
+VAR free : LINT; other : Meter; i : INT; bad : BOOL; END_VAR
+FOR i := 2 TO 4000 DO
+  IF list[i] <> list[1] THEN bad := TRUE; END_IF;
+END_FOR;
+IF list[1] <> n THEN bad := TRUE; END_IF;
+IF bad THEN free := 1 / (free - free); END_IF;
+n := n + 1;
+FOR i := 1 TO 4000 DO list[i] := n; END_FOR;
+meter();
+other();
+mode := Mode#Heating;
+name := 'run';
+free := free + 1;
+END_PROGRAM
+";
+
+#[test]
+fn a_warm_start_goes_on_a_cold_one_begins_again() {
+    let plant = Plant::new(&[("m.st", SETS)]);
+    plant.build("m.st", "m");
+    let watch = "Main.n,Main.free,Main.meter.n,Main.meter.volatile,Main.meter.own,Main.other.n,Main.other.own,Main.mode,Main.name";
+    let run = |more: &[&str]| {
+        let args = ["--virtual-time", "--cycles", "3", "--retain", "r", "--watch", watch];
+        let done = plant.run("m", &[&args[..], more].concat());
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        done.stdout.lines().last().unwrap_or_default().to_string()
+    };
+    assert_eq!(run(&[]), "3,3,3,3,3,3,3,3,Heating,'run'");
+    // NON_RETAIN inside a RETAIN instance begins again, RETAIN inside another goes on.
+    assert_eq!(run(&[]), "3,6,3,6,3,6,3,6,Heating,'run'");
+    assert_eq!(run(&["--cold"]), "3,3,3,3,3,3,3,3,Heating,'run'");
+    assert_eq!(run(&[]), "3,6,3,6,3,6,3,6,Heating,'run'");
+}
+
+#[test]
+fn retained_values_are_shown_and_compared() {
+    let plant = Plant::new(&[("m.st", SETS)]);
+    let run =
+        |file: &str, cycles: &str| plant.plcc(&["run", "m.st", "--virtual-time", "--cycles", cycles, "--retain", file]);
+    assert_eq!((run("a", "2").code, run("b", "3").code), (0, 0));
+    let show = plant.plcc(&["retain", "show", "a"]);
+    assert_eq!(show.code, 0, "{}", show.stderr);
+    for line in [
+        "Main.n : LINT := 2\n",
+        "Main.list[4000] : LINT := 2\n",
+        "Main.mode : (Idle, Filling, Heating) := Heating\n",
+        "Main.name : STRING[8] := 'run'\n",
+    ] {
+        assert!(show.stdout.contains(line), "{line} {}", &show.stdout[..500]);
+    }
+    assert!(!show.stdout.contains("volatile") && !show.stdout.contains("free"));
+    let diff = plant.plcc(&["retain", "diff", "a", "b"]);
+    assert!(diff.stdout.contains("~ Main.n : LINT := 2 -> LINT := 3\n"), "{}", &diff.stdout[..200]);
+    assert!(!diff.stdout.contains("Main.name"));
+    let edited =
+        SETS.replace("n : LINT; list", "n : DINT; list").replace("name : STRING[8] := 'start'", "label : STRING[8]");
+    let edited = edited.replace("name := 'run'", "label := 'x'").replace("n := n + 1;\nFOR", "n := n + DINT#1;\nFOR");
+    plant.write("edited.st", &edited);
+    let diff = plant.plcc(&["retain", "diff", "a", "edited.st"]);
+    for line in [
+        "dropped  Main.n : LINT; it is DINT now\n",
+        "new      Main.label : STRING[8]\n",
+        "dropped  Main.name : STRING[8] := 'run'\n",
+    ] {
+        assert!(diff.stdout.contains(line), "{line} {} {}", diff.stdout, diff.stderr);
+    }
+    let wrong = plant.plcc(&["retain", "show", "m.st"]);
+    assert!(wrong.code == 3 && wrong.stderr.contains("no retain file"), "{}", wrong.stderr);
+    assert_eq!(plant.plcc(&["retain", "show", "nothing"]).code, 3);
+}
+
+/// The program faults if a set is torn; n must never be behind what the trace of the killed run shows.
+#[test]
+fn killed_at_random_moments_nothing_is_torn_or_lost() {
+    let kills: u64 = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let plant = Plant::new(&[("m.st", SETS)]);
+    plant.build("m.st", "m");
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut before: i64 = 0;
+    for kill in 0..kills {
+        // Every other run is in real time; the flush runs as often as it can, in some runs never.
+        let flush = ["1ms", "3ms", "1h"][random.usize(0..3)];
+        let mut args = vec!["--retain", "r", "--watch", "Main.n", "--trace", "t.csv", "--retain-flush", flush];
+        args.extend(if random.bool() { ["--virtual-time", "--cycles=100000000"] } else { ["--interval", "300us"] });
+        let mut child = plant.start("m", &args);
+        std::thread::sleep(Duration::from_micros(random.u64(0..60_000)));
+        child.kill().expect("it is killed");
+        let done = child.wait_with_output().expect("it ends");
+        let stderr = String::from_utf8_lossy(&done.stderr);
+        assert!(!stderr.contains("E0"), "kill {kill}: {stderr}");
+        let show = plant.plcc(&["retain", "show", "r"]);
+        if !plant.path("r").exists() {
+            continue;
+        }
+        assert_eq!(show.code, 0, "kill {kill}: {}", show.stderr);
+        let mut values = show.stdout.lines().filter_map(|l| {
+            let (name, rest) = l.split_once(" : LINT := ")?;
+            (name == "Main.n" || name.starts_with("Main.list[")).then(|| rest.parse::<i64>().expect("a number"))
+        });
+        let n = values.next().expect("Main.n");
+        assert!(values.all(|v| v == n), "kill {kill}: torn at {n}");
+        // The trace is written behind the capture, so what it shows is kept.
+        let trace = std::fs::read_to_string(plant.path("t.csv")).unwrap_or_default();
+        let rows = trace.rfind('\n').map_or("", |end| &trace[..end]);
+        let traced = rows.lines().last().and_then(|l| l.split_once(',')).and_then(|(_, n)| n.parse::<i64>().ok());
+        assert!(n >= traced.unwrap_or(before), "kill {kill}: {n} is kept, {traced:?} was traced, {before} before");
+        before = n;
+    }
+    assert!(before > 0 || kills < 3, "no run came to a cycle");
+}
