@@ -3,6 +3,7 @@
 
 mod divide;
 mod ranges;
+mod unroll;
 
 use plcc_hir::Profile;
 use plcc_mir::ir::{Inst, Program};

@@ -357,7 +357,9 @@ impl Generator<'_> {
         let kinds = [self.random.pick(&Repr::ALL), self.random.pick(&Repr::ALL)];
         let reprs: Vec<Repr> = (0..self.random.below(6)).map(|_| self.random.pick(&kinds)).collect();
         let start: Vec<ValueId> = reprs.iter().map(|r| self.value(*r)).collect();
-        let count = self.b.number(Repr::I8, 1 + self.random.below(4));
+        // Mostly so short that nothing is left of the loop, sometimes so long that several passes become one.
+        let most = if self.loops == 0 && self.random.chance(20) { 40 } else { 4 };
+        let count = self.b.number(Repr::I8, 1 + self.random.below(most));
         self.b.jump(head, &[&[count], &start[..]].concat());
         let left = self.b.block_param(head, Repr::I8);
         let carried: Vec<ValueId> = reprs.iter().map(|r| self.b.block_param(head, *r)).collect();

@@ -25,6 +25,7 @@ mod rewrite;
 mod scale;
 mod select;
 mod ssa;
+mod unroll;
 
 use crate::ir::{Func, Program};
 
@@ -63,6 +64,8 @@ pub fn passes() -> &'static [Pass] {
         RANGES, TIDY,
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
         SELECT, TIDY,
+        Pass { name: "unroll", run: |p| each(p, unroll::run) }, TIDY, FORWARD, DEAD_STORES, TIDY,
+        Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, TIDY,
         Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
     ];
