@@ -50,6 +50,8 @@ struct Placed {
     outs: Vec<(i32, i32)>,
     /// Room above for a name.
     above: i32,
+    /// Room on the left and on the right for what stands at pins.
+    beside: (i32, i32),
 }
 
 /// The text in or at an element.
@@ -125,7 +127,8 @@ impl Placed {
         let rail = matches!(element.kind, ElementKind::LeftRail | ElementKind::RightRail);
         let across_size = if rail { 4 } else { size(element.size.x, across, wide) };
         let rect = Rect { left, top, right: left + across_size, bottom: top + size(element.size.y, down, high) };
-        let mut place = Placed { rect, ins: Vec::new(), outs: Vec::new(), above: above(element) };
+        let mut place =
+            Placed { rect, ins: Vec::new(), outs: Vec::new(), above: above(element), beside: beside(element) };
         place.pins(element, |pin| (pin.at.y > 0.0).then(|| top + at(pin.at.y, down)));
         // Contacts and coils have one line through them.
         if matches!(element.kind, ElementKind::Contact { .. } | ElementKind::Coil { .. }) {
@@ -168,7 +171,9 @@ impl Placed {
 
     /// With what stands above.
     fn around(&self) -> Rect {
-        Rect { top: self.rect.top - self.above, ..self.rect }
+        let (left, right) = self.beside;
+        let rect = self.rect;
+        Rect { left: rect.left - left, right: rect.right + right, top: rect.top - self.above, ..rect }
     }
 
     fn shift(&mut self, x: i32, y: i32) {
@@ -184,6 +189,19 @@ fn above(element: &Element) -> i32 {
         ElementKind::Contact { .. } | ElementKind::Coil { .. } | ElementKind::Block { instance: Some(_), .. } => 18,
         _ => 0,
     }
+}
+
+/// Room for the operands at the pins of a block.
+fn beside(element: &Element) -> (i32, i32) {
+    let room = |pins: &[Pin]| {
+        let widths = pins.iter().filter_map(|p| p.operand.as_ref()).map(|e| operand_width(e) + STUB);
+        widths.max().unwrap_or(0)
+    };
+    (room(&element.inputs), room(&element.outputs))
+}
+
+fn operand_width(operand: &Expr) -> i32 {
+    width(&source::expression(operand)) + 14
 }
 
 /// Columns along the data flow, for elements without positions.
@@ -216,7 +234,8 @@ fn columns(elements: &[Element]) -> Vec<Placed> {
             let (wide, high) = needs(element);
             y += above(element);
             let rect = Rect { left: x, top: y, right: x + wide, bottom: y + high };
-            let mut place = Placed { rect, ins: Vec::new(), outs: Vec::new(), above: above(element) };
+            let mut place =
+                Placed { rect, ins: Vec::new(), outs: Vec::new(), above: above(element), beside: beside(element) };
             place.pins(element, |_| None);
             right = right.max(rect.right);
             y += high + 24;
@@ -388,6 +407,22 @@ fn shapes_of(element: &Element, place: &Placed, shapes: &mut Vec<Shape>) {
             shapes.push(Shape::Symbol { rect, symbol: Symbol::Coil, text, mark: letter(modifier) });
         }
         ElementKind::Block { instance, .. } => {
+            for (pin, (x, y)) in element.inputs.iter().zip(&place.ins) {
+                let Some(operand) = &pin.operand else { continue };
+                let right = x - STUB;
+                let rect = Rect { left: right - operand_width(operand), right, top: y - 9, bottom: y + 9 };
+                let text = source::expression(operand);
+                shapes.push(Shape::Wire { points: vec![(right, *y), (*x, *y)] });
+                shapes.push(Shape::Symbol { rect, symbol: Symbol::Read, text, mark: String::new() });
+            }
+            for (pin, (x, y)) in element.outputs.iter().zip(&place.outs) {
+                let Some(operand) = &pin.operand else { continue };
+                let left = x + STUB;
+                let rect = Rect { left, right: left + operand_width(operand), top: y - 9, bottom: y + 9 };
+                let text = source::expression(operand);
+                shapes.push(Shape::Wire { points: vec![(*x, *y), (left, *y)] });
+                shapes.push(Shape::Symbol { rect, symbol: Symbol::Written, text, mark: String::new() });
+            }
             let instance = instance.as_ref().map(source::expression).unwrap_or_default();
             let pin = |(pin, (_, y)): (&Pin, &(i32, i32))| (*y, pin.name.to_string(), letter(&pin.modifier));
             shapes.push(Shape::Block {

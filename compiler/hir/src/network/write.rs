@@ -144,8 +144,33 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 }
             }
         }
+        for (element, drawn) in self.network.elements.iter().enumerate() {
+            for pin in drawn.outputs.iter().enumerate().filter(|(_, p)| p.operand.is_some()).map(|(n, _)| n) {
+                *self.uses.entry(Source { element, pin }).or_default() += 1;
+            }
+        }
         for (source, span) in late {
             self.read_late(source, span);
+        }
+    }
+
+    /// The variables that stand at the outputs of a block take their values.
+    fn assign_operands(&mut self, index: usize) {
+        let element = self.at(index);
+        let function = matches!(element.kind, ElementKind::Block { instance: None, .. });
+        for (pin, output) in element.outputs.iter().enumerate() {
+            let Some(target) = &output.operand else { continue };
+            let source = Source { element: index, pin };
+            let Some(value) = self.values.get_mut(&source) else {
+                self.missing(output.span);
+                continue;
+            };
+            value.uses = value.uses.saturating_sub(1);
+            let value = value.expr.clone();
+            let guarded = function && self.has_en(index) && !output.name.eq_ignore_ascii_case("ENO");
+            let eno = Source { element: index, pin: ENO };
+            let guard = self.values.get(&eno).filter(|_| guarded).map(|v| v.expr.clone());
+            self.store(target, value, Modifier::default(), index, guard);
         }
     }
 
@@ -406,7 +431,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
         let sources = self.links.inputs[element].get(pin).map(Vec::as_slice).unwrap_or_default();
         let span = drawn.span;
         let mut values: Vec<Expr> = sources.iter().map(|(s, at)| self.take(*s, element, *at)).collect();
-        values.extend(found.literal.clone());
+        values.extend(found.operand.clone());
         if values.len() > 1 && self.network.notation == Notation::Fbd {
             let mut places = sources.iter().map(|(_, at)| *at);
             let (first, second) = (places.next().unwrap_or(span), places.next().unwrap_or(span));
@@ -497,7 +522,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
             }
             // Left over in many drawings; it changes nothing.
             ElementKind::Out { .. }
-                if element.inputs.iter().all(|p| p.connections.is_empty() && p.literal.is_none()) =>
+                if element.inputs.iter().all(|p| p.connections.is_empty() && p.operand.is_none()) =>
             {
                 self.say(
                     codes::IDLE_ELEMENT,
@@ -520,8 +545,14 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 let value = if *negated_out { not(variable.clone(), span) } else { variable.clone() };
                 self.give(own, value, *negated_out);
             }
-            ElementKind::Block { ty, instance: Some(instance) } => self.function_block(index, ty, instance),
-            ElementKind::Block { ty, instance: None } => self.function(index, ty, next),
+            ElementKind::Block { ty, instance: Some(instance) } => {
+                self.function_block(index, ty, instance);
+                self.assign_operands(index);
+            }
+            ElementKind::Block { ty, instance: None } => {
+                self.function(index, ty, next);
+                self.assign_operands(index);
+            }
             ElementKind::Label(name) => {
                 self.flush_all();
                 self.out.push(Stmt { kind: StmtKind::Label(name.clone()), span });
@@ -584,7 +615,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
     fn has_en(&self, index: usize) -> bool {
         let pins = self.at(index).inputs.iter();
         let mut en = pins.filter(|p| p.name.eq_ignore_ascii_case("EN"));
-        en.any(|p| !p.connections.is_empty() || p.literal.is_some())
+        en.any(|p| !p.connections.is_empty() || p.operand.is_some())
     }
 
     /// Values at the inputs of a block, by pin.

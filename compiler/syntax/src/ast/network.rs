@@ -155,8 +155,8 @@ pub struct Pin {
     pub in_out: bool,
     /// What leads here; outputs have none.
     pub connections: Vec<Connection>,
-    /// An expression that stands at the pin itself.
-    pub literal: Option<Expr>,
+    /// What stands at the pin itself: at an input the value, at an output the variable that takes it.
+    pub operand: Option<Expr>,
     /// Where it is written.
     pub span: Span,
 }
