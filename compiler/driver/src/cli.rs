@@ -28,6 +28,8 @@ pub enum Color {
 }
 
 /// The commands.
+// Made once per process.
+#[allow(clippy::large_enum_variant)]
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Compile to a native executable, or print a stage.
