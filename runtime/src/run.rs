@@ -112,6 +112,7 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     let interval_ns = workers.iter().map(|(_, ns)| *ns).reduce(crate::task::gcd).unwrap_or(1);
     let shared_retain = writers.next().flatten();
     let edges = Edges::new(image, driver, forces.unwrap_or_default());
+    let report = |workers: &[(Worker, i64)]| print_now(image, &workers.iter().map(|(w, _)| w).collect::<Vec<_>>());
     // What is recorded needs one moment for all resources: then they run one after the other, as in virtual time.
     let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some();
     let (end, workers) = if image.resources.len() > 1 && !flags.virtual_time && !recorded {
@@ -138,10 +139,7 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
             retain: shared_retain,
             charts: Charts::new(image, &resolver),
             cycles: flags.cycles,
-            report: Box::new(|workers| {
-                let workers: Vec<&Worker> = workers.iter().map(|(w, _)| w).collect();
-                print_now(image, &workers);
-            }),
+            report: &report,
         };
         let end = scan.run();
         (end, scan.workers.into_iter().map(|(w, _)| w).collect())

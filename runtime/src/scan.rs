@@ -13,6 +13,9 @@ use crate::trace::Trace;
 use crate::vcd::Vcd;
 use crate::worker::{Halt, Meeting, Worker};
 
+/// Tells the statistics of workers.
+pub type Report<'r> = dyn Fn(&[(Worker, i64)]) + 'r;
+
 /// Everything a run works on.
 pub struct Scan<'a> {
     pub image: &'a Image,
@@ -32,7 +35,7 @@ pub struct Scan<'a> {
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
     /// Tells the statistics, when somebody asked for them.
-    pub report: Box<dyn FnMut(&[(Worker, i64)]) + 'a>,
+    pub report: &'a Report<'a>,
 }
 
 /// How a run ended.

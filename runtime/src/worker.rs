@@ -105,7 +105,7 @@ impl Worker<'_> {
                 let told = fault::describe(image, part, status, task, cycle);
                 let last = if restarts[n] == TOLD_RESTARTS { "; further ones are not told" } else { "" };
                 let told = with_history(told, history.as_ref(), image, resolver, part, cycle);
-                eprint!("{told}  the task starts again{last}\n");
+                eprintln!("{told}  the task starts again{last}");
             }
             for (start, bytes) in &image.tasks[task].programs {
                 let source = &initial[*start as usize..][..*bytes as usize];

@@ -33,7 +33,7 @@ pub enum Command {
     /// Compile to a native executable, or print a stage.
     Build(BuildArgs),
     /// Compile and run at once.
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// Find mistakes and explain them.
     Check(CheckArgs),
     /// Draw a program: its charts as SVG.
