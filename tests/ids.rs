@@ -15,8 +15,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
 
 /// Ids whose feature is not built yet, with the issue that builds it. An id that gets a case leaves this list.
 const NOT_BUILT: &[(&str, &str)] = &[
-    // Several RESOURCEs.
-    ("C3", "issue 7"),
     ("X1", "the issue of PLCopen XML"),
 ];
 
