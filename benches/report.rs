@@ -1,17 +1,20 @@
 //! All programs in all lanes, in one run, to a report below `target/bench-report` (Markdown, JSON, SVG).
 //!
 //! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a tenth of the
-//! time. `cargo test` runs them for some cycles: every lane must give the same outputs after each cycle.
+//! time; `cargo test -p plcc-benches --bench report -- --brief pid` prints medians at once. `cargo test` runs them for some cycles: every lane must give the same outputs after each cycle.
 
 use plcc::bench::measure::{Plan, measure};
-use plcc::bench::report::{LaneReport, ProgramReport, Report, figure, whole};
+use plcc::bench::report::{LaneAbout, LaneReport, ProgramReport, Report, figure, two, whole};
 use plcc::bench::ticks::Scale;
-use plcc::bench::{machine, method};
+use plcc::bench::{count, machine, method, svg};
 use plcc_benches::lanes::{ABOUT, Choice, INTERP, JIT, JIT_NONE, LINKED, Lanes};
 use plcc_benches::programs::{PROGRAMS, Program};
-use plcc_benches::{count, reference, svg, targets};
+use plcc_benches::{reference, targets};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// The argument with which the bench starts itself to count instructions.
+const COUNT: &str = "--count";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -20,13 +23,16 @@ fn main() -> ExitCode {
     let chosen: Vec<&Program> =
         PROGRAMS.iter().filter(|p| names.is_empty() || names.iter().any(|n| p.name.contains(n))).collect();
     let folder = tempfile::tempdir().expect("a folder for what the C compiler makes");
-    let result = if has(count::FLAG) {
-        count::run(&chosen, folder.path())
+    let result = if has(COUNT) {
+        chosen.iter().try_for_each(|program| counted(program, folder.path()))
+    } else if has("--brief") {
+        println!("median cycle, ns: program, then each lane and its ratio to C -O2");
+        chosen.iter().try_for_each(|program| brief(program, folder.path()))
     } else if has("--bench") {
         let plan = if has("--quick") { Plan::QUICK } else { Plan::FULL };
-        write_report(&chosen, &plan, folder.path())
+        write_report(&chosen, &charts(&names), &plan, folder.path())
     } else {
-        chosen.iter().try_for_each(|program| check(program, folder.path()))
+        chosen.iter().try_for_each(|program| check(program, folder.path())).and_then(|()| check_charts(&names))
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -35,6 +41,14 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// What runs under valgrind.
+fn counted(program: &Program, folder: &Path) -> Result<(), String> {
+    let lanes = Lanes::new(program, Choice::Counted, count::CYCLES, folder)?;
+    let mut lanes: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
+    count::run(program.name, &mut lanes, count::CYCLES);
+    Ok(())
 }
 
 /// The same outputs in all lanes, and a measurement in small.
@@ -55,7 +69,54 @@ fn check(program: &Program, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn write_report(programs: &[&Program], plan: &Plan, folder: &Path) -> Result<(), String> {
+/// Medians of a few lanes, a line a program: what one looks at while working on the compiler.
+fn brief(program: &Program, folder: &Path) -> Result<(), String> {
+    let named = |e: String| format!("{}: {e}", program.name);
+    let mut lanes = Lanes::new(program, Choice::Few { linked: false }, 400, folder).map_err(named)?;
+    lanes.compare(400).map_err(named)?;
+    let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
+    let plan = Plan { samples: 100, sample_ns: 10_000.0, cycles: 400, repeats: 1 };
+    let measured = measure(&mut running, &plan, Scale::calibrate()).map_err(|f| named(format!("{f:?}")))?;
+    let reports = running.iter().zip(&measured.times).map(|(lane, times)| LaneReport::new(lane.name, times));
+    let medians: Vec<(&str, f64)> =
+        reports.map(|lane| (lane.name, figure::median(&lane).unwrap_or(f64::NAN))).collect();
+    let base = medians.iter().find(|(name, _)| *name == reference::O2.lane).map_or(f64::NAN, |(_, ns)| *ns);
+    let cells = medians.iter().map(|(name, ns)| format!("{name} {ns:.1} ({:.2})", ns / base));
+    println!("{:10} {}", program.name, cells.collect::<Vec<_>>().join(", "));
+    Ok(())
+}
+
+type Chart = (String, String, String);
+
+/// The charts whose names are asked for.
+fn charts(names: &[&str]) -> Vec<Chart> {
+    let mut all = plcc_benches::charts::all();
+    all.retain(|(chart, ..)| names.is_empty() || names.iter().any(|n| chart.contains(n)));
+    all
+}
+
+fn check_charts(names: &[&str]) -> Result<(), String> {
+    for (name, _, text) in charts(names).iter().filter(|(name, ..)| !name.ends_with("1000")) {
+        let (_, moved) = Lanes::without_reference(name, text)?.compare(200).map_err(|e| format!("{name}: {e}"))?;
+        assert_eq!(moved, 1, "{name}: the total of all actions does not move");
+    }
+    Ok(())
+}
+
+/// Charts by size, in a report of their own: they have no reference in C.
+fn chart_report(charts: &[Chart], plan: &Plan, scale: Scale) -> Result<Report, String> {
+    let wanted = |lane: &&LaneAbout| [INTERP, JIT_NONE, JIT].contains(&lane.name);
+    let lanes = ABOUT.iter().filter(wanted).cloned().collect();
+    let mut report = Report { title: "Charts by size".into(), lanes, base: JIT.into(), ..Report::default() };
+    for (name, what, text) in charts {
+        eprintln!("{name}: {what}");
+        let lanes = Lanes::without_reference(name, text)?;
+        report.programs.push(measured(name, what, lanes, plan, scale)?);
+    }
+    Ok(report)
+}
+
+fn write_report(programs: &[&Program], charts: &[Chart], plan: &Plan, folder: &Path) -> Result<(), String> {
     let scale = Scale::calibrate();
     let mut report = Report {
         title: "Cycle times of plcc".into(),
@@ -73,15 +134,16 @@ fn write_report(programs: &[&Program], plan: &Plan, folder: &Path) -> Result<(),
         eprintln!("{}: {}", program.name, program.what);
         report.programs.push(one(program, plan, scale, folder).map_err(|e| format!("{}: {e}", program.name))?);
     }
+    let charts = chart_report(charts, plan, scale)?;
     report.machine.push(plcc::bench::load("after"));
     eprintln!("instructions");
-    let names: Vec<&str> = programs.iter().map(|p| p.name).collect();
-    match count::count(&names, folder)? {
-        Some(counts) => add_counts(&mut report, &counts),
+    let names = programs.iter().map(|p| p.name);
+    match count::count(&std::iter::once(COUNT).chain(names).collect::<Vec<_>>(), folder)? {
+        Some(counts) => count::add(&mut report, &counts),
         None => report.machine.push("there is no valgrind for this machine: instructions were not counted".into()),
     }
     let out = out_folder();
-    let text = markdown(&report);
+    let text = markdown(&report, &charts);
     let write = |name: &str, text: &str| {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))
@@ -89,6 +151,7 @@ fn write_report(programs: &[&Program], plan: &Plan, folder: &Path) -> Result<(),
     std::fs::create_dir_all(&out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
     write("report.md", &text)?;
     write("report.json", &report.json())?;
+    write("charts.json", &charts.json())?;
     let lanes = [JIT, JIT_NONE, reference::O3_NATIVE.lane];
     write("ratios.svg", &svg::ratios(&report, "Median cycle", &lanes, figure::median))?;
     write("worst.svg", &svg::ratios(&report, "Longest undisturbed cycle", &lanes, figure::undisturbed_worst))?;
@@ -96,20 +159,7 @@ fn write_report(programs: &[&Program], plan: &Plan, folder: &Path) -> Result<(),
     Ok(())
 }
 
-fn add_counts(report: &mut Report, counts: &count::Counts) {
-    for program in &mut report.programs {
-        for lane in &mut program.lanes {
-            lane.instructions = counts.get(&(program.name.clone(), lane.name.to_string())).copied();
-        }
-    }
-    report.method.push(format!(
-        "*Instructions*: callgrind counts every instruction of the first {} cycles, cycle by cycle, libraries with it, less those \
-         of an empty scan. The numbers are the same in every run.",
-        count::CYCLES
-    ));
-}
-
-fn markdown(report: &Report) -> String {
+fn markdown(report: &Report, charts: &Report) -> String {
     let base = &report.base;
     [
         report.head(),
@@ -142,6 +192,22 @@ fn markdown(report: &Report) -> String {
             "Compile time",
             "CPU milliseconds from source to running in the JIT, the standard function blocks with it; of the lane `jit`.",
         ),
+        report.passes("Passes of the optimiser", "CPU milliseconds over all programs; a pass that comes several times counts once."),
+        report.table("Interpreter: operations of a cycle", "Mean.", figure::operations, whole),
+        report.table(
+            "Interpreter: nanoseconds an operation",
+            "The typical cycle by its operations.",
+            figure::ns_an_operation,
+            two,
+        ),
+        charts.table(
+            "Charts by size: typical cycle",
+            "Nanoseconds. A ring has one active step, lanes have ten; each step has an action and an output with N, L, D or P.",
+            figure::median,
+            whole,
+        ),
+        charts.table("Charts by size: longest undisturbed cycle", "Nanoseconds.", figure::undisturbed_worst, whole),
+        charts.compile_times("Charts by size: compile time", "CPU milliseconds."),
         report.tail(),
     ]
     .concat()
@@ -150,23 +216,26 @@ fn markdown(report: &Report) -> String {
 fn one(program: &Program, plan: &Plan, scale: Scale, folder: &Path) -> Result<ProgramReport, String> {
     let mut lanes = Lanes::new(program, Choice::All, plan.cycles, folder)?;
     lanes.compare(plan.cycles)?;
-    let (compile_ms, lines) = (lanes.compile_ms.clone(), lanes.lines);
-    let code: Vec<_> = lanes.lanes.iter().map(|p| p.code_bytes).collect();
-    let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
+    measured(program.name, program.what, lanes, plan, scale)
+}
+
+fn measured(name: &str, what: &str, lanes: Lanes, plan: &Plan, scale: Scale) -> Result<ProgramReport, String> {
+    let Lanes { lanes, compile_ms, passes_ms, lines, .. } = lanes;
+    let facts: Vec<_> = lanes.iter().map(|p| (p.code_bytes, p.operations)).collect();
+    let mut running: Vec<_> = lanes.into_iter().map(|p| p.lane).collect();
     let measured = measure(&mut running, plan, scale).map_err(|f| format!("{f:?}"))?;
-    let reports = running
-        .iter()
-        .zip(&measured.times)
-        .zip(code)
-        .map(|((lane, times), code_bytes)| LaneReport { code_bytes, ..LaneReport::new(lane.name, times) });
+    let reports = running.iter().zip(&measured.times).zip(facts).map(|((lane, times), (code_bytes, operations))| {
+        LaneReport { code_bytes, operations, ..LaneReport::new(lane.name, times) }
+    });
     Ok(ProgramReport {
-        name: program.name.into(),
-        what: program.what.into(),
+        name: name.into(),
+        what: what.into(),
         lines,
         batch: measured.batch,
         cycles: plan.cycles,
         lanes: reports.collect(),
         compile_ms,
+        passes_ms,
     })
 }
 

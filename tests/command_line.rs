@@ -327,3 +327,45 @@ fn large_charts_are_proved_or_said_to_be_not_proved() {
         "mesh.st:3:1: warning[W0480]: the structure of this chart is not proved beyond 50001 markings\n1 warning\n";
     assert_eq!((done.code, done.stderr.as_str()), (0, told));
 }
+
+/// `plcc bench`: the report in all forms; a fault is told as by `plcc run`, and nothing is measured.
+#[test]
+fn bench_reports() {
+    let fault = "PROGRAM Main\nVAR n, z : INT; END_VAR\nn := n + 1;\nz := 10 / (5 - n);\nEND_PROGRAM\n";
+    let endless = "PROGRAM Main\nVAR n : INT; END_VAR\nWHILE n = 0 DO\n  ;\nEND_WHILE;\nEND_PROGRAM\n";
+    let f = folder_with(&[
+        ("count.st", COUNTER),
+        ("fault.st", fault),
+        ("endless.st", endless),
+        ("in.csv", "cycle,Main.n\n3,40\n"),
+    ]);
+    // Without a path there is neither linker nor valgrind: both are said to be missing.
+    let bench = |args: &[&str]| -> Done {
+        let mut command = std::process::Command::new(PLCC);
+        command.args(["bench", "--cycles", "20"]).args(args).current_dir(f.path()).env("PATH", "");
+        command.output().expect("plcc starts").into()
+    };
+    let done = bench(&["count.st", "--stimulus", "in.csv", "-o", "out"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let read = |name: &str| std::fs::read_to_string(f.path().join("out").join(name)).expect(name);
+    let text = read("report.md");
+    for part in
+        ["# Cycle times of count", "## Slow cycles", "`linked` was not measured", "that needs valgrind", "## Method"]
+    {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&read("report.json")).expect("JSON");
+    let lanes = json["programs"][0]["lanes"].as_array().expect("lanes");
+    let names: Vec<&str> = lanes.iter().filter_map(|l| l["name"].as_str()).collect();
+    assert_eq!(names, ["interpreter", "jit, opt none", "jit, no checks", "jit"]);
+    assert!(lanes.iter().all(|l| l["median_ns"].as_f64().is_some_and(|ns| ns > 0.0)), "{lanes:?}");
+    assert!(read("ratios.svg").starts_with("<svg "));
+    let done = bench(&["fault.st"]);
+    assert_eq!((done.code, done.stdout.as_str()), (1, ""));
+    assert!(done.stderr.contains("--> fault.st:4:") && done.stderr.ends_with("cycle 5\n"), "{}", done.stderr);
+    let done = bench(&["endless.st"]);
+    assert_eq!(done.code, 1);
+    assert!(done.stderr.contains("endless.st:3:"), "{}", done.stderr);
+    assert_eq!(bench(&["count.st", "--stimulus", "none.csv"]).code, 3);
+    assert_eq!(bench(&["count.st", "--cycles", "0"]).code, 2);
+}

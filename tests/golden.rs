@@ -13,6 +13,8 @@
 //! name.hir, .mir, .ast, .tokens   the print of that stage
 //! name.svg         what `plcc graph --sfc` draws
 //! ```
+//! A source may be PLCopen XML: `name.xml`, with its directives in a processing instruction behind the first line. `name.st` beside it is its
+//! twin: the same program in text, whose trace must be the same file.
 //! `UPDATE=1` rewrites what exists and makes a missing trace or diag; read it before you commit it.
 
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -30,7 +32,10 @@ fn main() {
     let trials = sources
         .into_iter()
         .map(|path| {
-            let name = path.strip_prefix(&cases).unwrap_or(&path).with_extension("").display().to_string();
+            let name = path.strip_prefix(&cases).unwrap_or(&path);
+            // An XML case and its twin in text share their name and their trace.
+            let name = if is_xml(&path) { name.to_path_buf() } else { name.with_extension("") };
+            let name = name.display().to_string();
             Trial::test(name, move || Case::read(&path).run())
         })
         .collect();
@@ -42,10 +47,14 @@ fn collect(folder: &Path, out: &mut Vec<PathBuf>) {
         let path = entry.path();
         if path.is_dir() {
             collect(&path, out);
-        } else if path.extension().is_some_and(|e| ["st", "il", "sfc"].iter().any(|x| e == *x)) {
+        } else if path.extension().is_some_and(|e| ["st", "il", "sfc", "xml"].iter().any(|x| e == *x)) {
             out.push(path);
         }
     }
+}
+
+fn is_xml(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e == "xml")
 }
 
 struct Case {
@@ -71,7 +80,9 @@ impl Case {
             exit: 0,
         };
         let bytes = std::fs::read(path).unwrap_or_default();
-        for line in String::from_utf8_lossy(&bytes).lines().take_while(|l| l.starts_with("//!")) {
+        // In XML they stand in a processing instruction behind the first line.
+        let skipped = if is_xml(path) { 2 } else { 0 };
+        for line in String::from_utf8_lossy(&bytes).lines().skip(skipped).take_while(|l| l.starts_with("//!")) {
             let Some((key, value)) = line[3..].trim().split_once(':') else { continue };
             let value = value.trim();
             match key.trim() {
@@ -105,6 +116,11 @@ impl Case {
         if self.run.is_some() {
             self.traces()?;
             checked = true;
+        }
+        // What is printed belongs to one of two twins: to the XML.
+        let twin = !is_xml(&self.path) && self.sibling("xml").exists();
+        if twin {
+            return if checked { Ok(()) } else { Err("a twin has a run directive".into()) };
         }
         if self.sibling("diag").exists() || (self.run.is_none() && update() && self.no_stage()) {
             let done = self.plcc(&self.with_profile(vec!["check", &self.name]));

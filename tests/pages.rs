@@ -6,12 +6,12 @@ use std::path::Path;
 
 const PLCC: &str = env!("CARGO_BIN_EXE_plcc-under-test");
 
-/// The first fenced block that starts with "```st", and whether it is for profile codesys.
-fn example(page: &str) -> Option<(String, bool)> {
-    let start = page.find("```st")?;
-    let rest = &page[start + 5..];
-    let (info, body) = rest.split_once('\n')?;
-    Some((body[..body.find("```")?].to_string(), info.contains("codesys")))
+/// The first fenced block, its language (`st` or `xml`), and whether it is for profile codesys.
+fn example(page: &str) -> Option<(String, &str, bool)> {
+    let start = page.find("```st").or_else(|| page.find("```xml"))?;
+    let (info, body) = page[start + 3..].split_once('\n')?;
+    let language = if info.starts_with("xml") { "xml" } else { "st" };
+    Some((body[..body.find("```")?].to_string(), language, info.contains("codesys")))
 }
 
 #[test]
@@ -19,7 +19,7 @@ fn each_example_yields_exactly_its_code() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut wrong = Vec::new();
     for info in codes::all().map(|c| c.info()) {
-        let Some((text, codesys)) = example(info.page) else {
+        let Some((text, language, codesys)) = example(info.page) else {
             // Faults, the project file, what is not built yet and what takes pages of text (too deep, too many errors,
             // too large a chart) have no example.
             let no_example = ["E0399", "E0507", "E0122", "E0123", "W0480"];
@@ -29,7 +29,7 @@ fn each_example_yields_exactly_its_code() {
             }
             continue;
         };
-        let name = format!("{}.st", info.code);
+        let name = format!("{}.{language}", info.code);
         std::fs::write(folder.path().join(&name), &text).expect("the example is written");
         let mut args = vec!["check", &name, "--message-format", "short"];
         if codesys {

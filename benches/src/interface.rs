@@ -76,6 +76,12 @@ impl Interface {
         let [inputs, outputs] = front.interface().map(|names| side(&names, image, &resolver));
         Self { inputs, outputs }
     }
+
+    /// Without inputs, with some variables as outputs.
+    pub fn watching(names: &[&str], image: &Image) -> Self {
+        let names: Vec<String> = names.iter().map(|n| (*n).to_string()).collect();
+        Self { inputs: Side::default(), outputs: side(&names, image, &Resolver::new(image)) }
+    }
 }
 
 /// C lays variables out in order, each at a multiple of the size of its elements, the whole at a multiple of the largest.

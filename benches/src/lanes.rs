@@ -5,11 +5,12 @@ use crate::programs::Program;
 use crate::reference::{self, Build, O2_COPY, Reference};
 use crate::stimulus::Stimulus;
 use plcc::bench::app::{Back, Front};
-use plcc::bench::lane::{Lane, OneTask, Rows};
+use plcc::bench::lane::{Cycle, Lane, OneTask, Rows};
 use plcc::bench::report::LaneAbout;
 use plcc::cli::OptArg;
 use plcc_hir::Profile;
 use std::path::Path;
+use std::rc::Rc;
 
 /// The scan interval.
 pub const INTERVAL_NS: i64 = 10_000_000;
@@ -69,6 +70,8 @@ pub struct Prepared {
     outputs: Option<usize>,
     /// Bytes of machine code.
     pub code_bytes: Option<u64>,
+    /// Operations of the interpreter in a cycle, mean.
+    pub operations: Option<f64>,
 }
 
 /// A program with its lanes.
@@ -78,6 +81,8 @@ pub struct Lanes {
     outputs: Side,
     /// CPU milliseconds of the compiler's stages, `--opt speed`, every check on.
     pub compile_ms: Vec<(&'static str, f64)>,
+    /// CPU milliseconds of the passes of the optimiser.
+    pub passes_ms: Vec<(&'static str, f64)>,
     /// Lines of source.
     pub lines: usize,
 }
@@ -96,12 +101,8 @@ impl Lanes {
         let mut out = Self {
             lanes: Vec::new(),
             outputs: interface.outputs.clone(),
-            compile_ms: vec![
-                ("parse", front.cpu_ms[0]),
-                ("check", front.cpu_ms[1]),
-                ("lower, optimise", speed.cpu_ms),
-                ("machine code", code_ms),
-            ],
+            compile_ms: stages(&front, &speed, code_ms),
+            passes_ms: Vec::new(),
             lines: program.sources.iter().map(|(_, text)| text.lines().count()).sum(),
         };
         let none = front.compile("all", OptArg::None)?;
@@ -109,7 +110,11 @@ impl Lanes {
             out.ours(INTERP, none.interpreter(), &none, of(&none));
             out.ours(INTERP_SPEED, speed.interpreter(), &speed, of(&speed));
         }
-        if matches!(choice, Choice::All) {
+        if choice == Choice::All {
+            out.passes_ms = none.passes_ms();
+            for (prepared, back) in out.lanes.iter_mut().zip([&none, &speed]) {
+                prepared.operations = Some(operations(back, of(back), rows));
+            }
             let back = front.compile("none", OptArg::None)?;
             out.ours(JIT_NONE_UNCHECKED, back.jit().0, &back, of(&back));
         }
@@ -122,6 +127,26 @@ impl Lanes {
             out.ours(LINKED, linked, &speed, of(&speed));
         }
         out.references(program, choice, &interface, &values, &like, folder)?;
+        Ok(out)
+    }
+
+    /// A program without inputs and without a reference, whose `Main.total` is compared.
+    pub fn without_reference(name: &str, text: &str) -> Result<Self, String> {
+        let front = Front::new(&[(name, text)], Profile::Strict)?;
+        let none = front.compile("all", OptArg::None)?;
+        let speed = front.compile("all", OptArg::Speed)?;
+        let (jit, code_ms) = speed.jit();
+        let mut out = Self {
+            lanes: Vec::new(),
+            outputs: Interface::watching(&["Main.total"], speed.image()).outputs,
+            compile_ms: stages(&front, &speed, code_ms),
+            passes_ms: Vec::new(),
+            lines: text.lines().count(),
+        };
+        let rows = Rows { offset: 0, bytes: 0, table: Rc::default() };
+        out.ours(INTERP, none.interpreter(), &none, rows.clone());
+        out.ours(JIT_NONE, none.jit().0, &none, rows.clone());
+        out.ours(JIT, jit, &speed, rows);
         Ok(out)
     }
 
@@ -168,7 +193,12 @@ impl Lanes {
         rows.table = like.table.clone();
         let subject = Box::new(OneTask::new(engine, shape.bytes, rows, INTERVAL_NS));
         let lane = Lane { name: lane, subject };
-        self.lanes.push(Prepared { lane, outputs: Some(shape.outputs.0), code_bytes: built.code_bytes });
+        self.lanes.push(Prepared {
+            lane,
+            outputs: Some(shape.outputs.0),
+            code_bytes: built.code_bytes,
+            operations: None,
+        });
         Ok(())
     }
 
@@ -182,7 +212,7 @@ impl Lanes {
         let native = ![INTERP, INTERP_SPEED].contains(&name);
         let code_bytes = native.then(|| plcc::bench::app::code_bytes(&back.object())).flatten();
         let subject = Box::new(OneTask::new(engine, back.region_bytes(), rows, INTERVAL_NS));
-        self.lanes.push(Prepared { lane: Lane { name, subject }, outputs: None, code_bytes });
+        self.lanes.push(Prepared { lane: Lane { name, subject }, outputs: None, code_bytes, operations: None });
     }
 
     /// Runs all lanes for some cycles and compares every output after each of them; gives a checksum of all of it, and how many
@@ -224,6 +254,20 @@ impl Lanes {
     pub fn output_count(&self) -> usize {
         self.outputs.leaves.len()
     }
+}
+
+fn stages(front: &Front, speed: &Back, code_ms: f64) -> Vec<(&'static str, f64)> {
+    let [parse, check] = front.cpu_ms;
+    vec![("parse", parse), ("check", check), ("lower, optimise", speed.cpu_ms), ("machine code", code_ms)]
+}
+
+/// Operations of the interpreter in a cycle, mean.
+fn operations(back: &Back, rows: Rows, cycles: u64) -> f64 {
+    let (engine, count) = back.counting_interpreter();
+    let mut subject = OneTask::new(engine, back.region_bytes(), rows, INTERVAL_NS);
+    subject.restart();
+    assert_eq!(subject.run(0, cycles), 0, "a benchmark program faulted");
+    count.load(std::sync::atomic::Ordering::Relaxed) as f64 / cycles as f64
 }
 
 impl Prepared {

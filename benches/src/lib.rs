@@ -2,11 +2,9 @@
 //! `cargo bench`; see `report.rs`.
 
 pub mod charts;
-pub mod count;
 pub mod interface;
 pub mod lanes;
 pub mod programs;
 pub mod reference;
 pub mod stimulus;
-pub mod svg;
 pub mod targets;

@@ -14,6 +14,12 @@ pub fn table(report: &Report) -> String {
         "\n## In short\n\nRatios of medians where nothing else is said; geometric means over all programs.\n\n\
                    | promise | limit | measured | kept |\n|---|---:|---:|---|\n"
             .to_string();
+    let slowest_compile =
+        report.programs.iter().map(plcc::bench::report::ProgramReport::total_compile_ms).reduce(f64::max);
+    let interpreter_ns = |lane: &str| {
+        let each = report.programs.iter().filter_map(|p| p.lane(lane).and_then(figure::ns_an_operation));
+        plcc::bench::stats::geometric_mean(each)
+    };
     let mut row = |what: &str, limit: f64, measured: Option<f64>, at_least: bool| {
         let Some(value) = measured else { return };
         let kept = if at_least { value >= limit } else { value <= limit };
@@ -34,6 +40,8 @@ pub fn table(report: &Report) -> String {
     row("checks, worst program", 1.15, greatest(JIT, JIT_UNCHECKED, figure::median), false);
     row("interpreter against native code, mean", 30.0, report.mean_ratio(INTERP, JIT, figure::median), true);
     row("the same on optimised MIR", 30.0, report.mean_ratio(INTERP_SPEED, JIT, figure::median), true);
+    row("nanoseconds of the interpreter for an operation (or 30 above), mean", 15.0, interpreter_ns(INTERP), false);
+    row("CPU milliseconds from source to running, slowest program", 20.0, slowest_compile, false);
     row(
         "most instructions of a cycle against C -O2, mean",
         1.0,

@@ -138,6 +138,15 @@ pub trait Engine: Send {
     fn scan(&mut self, part: &mut Part, task: u32, now_ns: i64) -> u32;
 }
 
+impl<E: Engine + ?Sized> Engine for Box<E> {
+    fn init(&mut self, mem: &mut Region, cold: bool) {
+        (**self).init(mem, cold);
+    }
+    fn scan(&mut self, part: &mut Part, task: u32, now_ns: i64) -> u32 {
+        (**self).scan(part, task, now_ns)
+    }
+}
+
 /// `plc_app_init(mem, cold)`.
 pub type InitFn = unsafe extern "C" fn(*mut u8, i32);
 /// `plc_app_scan(mem, task, now_ns)`.

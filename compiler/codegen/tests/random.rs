@@ -286,7 +286,12 @@ impl Generator<'_> {
     fn check(&mut self) {
         self.b.set_source(SourceId::from_raw(self.random.below(100) as u32));
         let fault = self.random.pick(&plcc_stdlib::fault::ALL);
-        if self.random.chance(50) {
+        if self.random.chance(40) {
+            // Bounds that the value keeps, or just not.
+            let term = self.index();
+            let (low, high) = self.random.pick(&[(0, 0), (0, 0), (0, 3), (-1, 0), (0, 1), (0, -1), (1, 0)]);
+            self.b.check_within(term.value, term.low + low, term.high + high, fault);
+        } else if self.random.chance(50) {
             let v = self.value(Repr::I64);
             let (low, high) = self.random.pick(&[(i64::MIN, 100), (-5, i64::MAX), (0, i64::MAX), (-1000, 1 << 40)]);
             self.b.check_within(v, low, high, fault);
@@ -365,6 +370,12 @@ impl Generator<'_> {
             .iter()
             .map(|r| {
                 let same: Vec<ValueId> = carried.iter().copied().filter(|v| self.b.repr(*v) == *r).collect();
+                if r.is_int() && self.random.chance(40) {
+                    let step = self.random.pick(&[1, 1, 2, 5, u64::MAX, u64::MAX - 2, 100]);
+                    let step = self.b.number(*r, step);
+                    let from = self.random.pick(&same);
+                    return self.b.op(PrimOp::Add, *r, &[from, step]);
+                }
                 if self.random.chance(50) { self.random.pick(&same) } else { self.value(*r) }
             })
             .collect();

@@ -72,22 +72,36 @@ macro_rules! codes {
 mod configuration;
 mod il;
 mod names;
+mod networks;
 mod runtime;
 mod sfc;
 mod syntax;
 mod types;
+mod xml;
 
 pub use configuration::*;
 pub use il::*;
 pub use names::*;
+pub use networks::*;
 pub use runtime::*;
 pub use sfc::*;
 pub use syntax::*;
 pub use types::*;
+pub use xml::*;
 
 /// Every row, by phase.
 pub fn all() -> impl Iterator<Item = Code> {
-    let tables = [syntax::ROWS, names::ROWS, types::ROWS, sfc::ROWS, il::ROWS, configuration::ROWS, runtime::ROWS];
+    let tables = [
+        syntax::ROWS,
+        xml::ROWS,
+        names::ROWS,
+        types::ROWS,
+        networks::ROWS,
+        sfc::ROWS,
+        il::ROWS,
+        configuration::ROWS,
+        runtime::ROWS,
+    ];
     tables.into_iter().flatten().copied()
 }
 

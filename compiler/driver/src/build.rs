@@ -75,7 +75,7 @@ fn print_tokens(parsed: &Parsed) -> Result<(), Failure> {
 }
 
 /// Text to standard output; a reader that goes away is no error.
-fn output(text: &str) -> Result<(), Failure> {
+pub fn output(text: &str) -> Result<(), Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::device(format!("standard output: {e}"))),
         _ => Ok(()),

@@ -34,6 +34,8 @@ pub enum Command {
     Build(BuildArgs),
     /// Compile and run at once.
     Run(Box<RunArgs>),
+    /// Measure cycle times: native code beside the interpreter.
+    Bench(BenchArgs),
     /// Find mistakes and explain them.
     Check(CheckArgs),
     /// Draw a program: its charts as SVG.
@@ -179,6 +181,32 @@ pub enum EngineArg {
     Jit,
     /// The reference interpreter.
     Interp,
+}
+
+/// `plcc bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    /// Safety checks: all, none, or a list of index,division,subrange,pointer,deadline.
+    #[arg(long, value_name = "all|none|LIST")]
+    pub checks: Option<String>,
+    /// Cycles from the start that are measured.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub cycles: u64,
+    /// Base tick, as for plcc run.
+    #[arg(long, value_name = "TIME", value_parser = plcc_runtime::cli::parse_duration)]
+    pub interval: Option<i64>,
+    /// Inputs as CSV, as for plcc run.
+    #[arg(long, value_name = "FILE")]
+    pub stimulus: Option<PathBuf>,
+    /// A folder for the report as Markdown, JSON and SVG; without it Markdown goes to standard output.
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// Only run the cycles, between marks that callgrind understands: what plcc starts under valgrind to count instructions.
+    #[arg(long, hide = true)]
+    pub count_instructions: bool,
 }
 
 /// `plcc check`.

@@ -12,6 +12,7 @@ mod image;
 mod link;
 mod new;
 mod pipeline;
+mod places;
 mod project;
 mod render;
 mod retain;
@@ -54,6 +55,7 @@ pub fn execute(cli: Cli) -> u8 {
     let result = match cli.command {
         Command::Build(args) => build::build(&args, color),
         Command::Run(args) => run(&args, color),
+        Command::Bench(args) => bench::command::bench(&args, color),
         Command::Check(args) => check(&args.sources, color),
         Command::Graph(args) => graph::graph(&args, color),
         Command::Retain { action } => retain::retain(&action, color),

@@ -43,7 +43,7 @@ pub fn load(args: &SourceArgs) -> Result<Loaded, Failure> {
     Ok((project, sources, ids))
 }
 
-/// lex, blocks, parse: texts to trees.
+/// lex, blocks, parse, or xml: texts to trees.
 pub fn parse(mut sources: SourceMap, ids: &[(FileId, Profile)]) -> Parsed {
     let mut diags = Diagnostics::new();
     let mut files = Vec::new();
@@ -53,13 +53,19 @@ pub fn parse(mut sources: SourceMap, ids: &[(FileId, Profile)]) -> Parsed {
     }
     for (id, profile) in ids {
         let text = sources.file(*id).text.clone();
-        files.push((*id, *profile, false, plcc_syntax::parse_file(*id, &text, *profile, &mut diags)));
+        let parse = match project::is_xml(std::path::Path::new(&sources.file(*id).name)) {
+            true => plcc_syntax::parse_xml,
+            false => plcc_syntax::parse_file,
+        };
+        files.push((*id, *profile, false, parse(*id, &text, *profile, &mut diags)));
     }
     Parsed { sources, files, diags }
 }
 
-/// collect, check, configure: trees to the typed form.
+/// networks, collect, check, configure: trees to the typed form.
 pub fn check(parsed: &mut Parsed, project: &Project) -> Checked {
+    let mut trees: Vec<&mut ast::File> = parsed.files.iter_mut().map(|f| &mut f.3).collect();
+    plcc_hir::network::lower(&mut trees, &mut parsed.diags);
     let units: Vec<Unit> = parsed
         .files
         .iter()
@@ -67,6 +73,7 @@ pub fn check(parsed: &mut Parsed, project: &Project) -> Checked {
         .collect();
     let checked = plcc_hir::check(&units, &project.selection, &mut parsed.diags);
     plcc_hir::chart_structure::check(&checked.defs, &mut parsed.diags);
+    crate::places::name(&mut parsed.diags, &parsed.files, &parsed.sources);
     checked
 }
 

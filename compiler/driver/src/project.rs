@@ -320,14 +320,16 @@ fn folder(path: &Path) -> Result<Vec<PathBuf>, Failure> {
             // A link to a folder above would have no end.
             if path.is_dir() && !path.is_symlink() {
                 open.push(path);
-            } else if path.extension().is_some_and(|e| TEXT.iter().any(|t| e.eq_ignore_ascii_case(t))) {
+            } else if path.extension().is_some_and(|e| TEXT.iter().any(|t| e.eq_ignore_ascii_case(t)))
+                || (is_xml(&path) && is_plcopen(&path))
+            {
                 found.push(path);
             }
         }
     }
     if found.is_empty() {
         return Err(Failure::device(format!(
-            "no sources ({}) in `{}`",
+            "no sources ({} .xml) in `{}`",
             TEXT.map(|t| format!(".{t}")).join(" "),
             path.display()
         )));
@@ -336,17 +338,55 @@ fn folder(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
+/// Whether a source is PLCopen XML, by its name.
+pub fn is_xml(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"))
+}
+
+/// Whether an XML file of a folder is a PLCopen project: others live beside it.
+fn is_plcopen(path: &Path) -> bool {
+    let mut start = vec![0; 4096];
+    let read = std::fs::File::open(path).and_then(|mut f| std::io::Read::read(&mut f, &mut start)).unwrap_or(0);
+    String::from_utf8_lossy(&start[..read]).contains("plcopen.org/xml/tc6")
+}
+
+/// The text of an XML file that is not UTF-8: UTF-16, or the ISO-8859-1 that its declaration names.
+fn xml_text(path: &Path, bytes: Vec<u8>) -> Result<String, Failure> {
+    let units = |read: fn([u8; 2]) -> u16| bytes[2..].chunks_exact(2).map(|b| read([b[0], b[1]])).collect::<Vec<u16>>();
+    let wide = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => Some(units(u16::from_le_bytes)),
+        Some([0xfe, 0xff]) => Some(units(u16::from_be_bytes)),
+        _ => None,
+    };
+    if let Some(text) = wide.and_then(|units| String::from_utf16(&units).ok()) {
+        return Ok(text);
+    }
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_ascii_lowercase();
+    let declaration = head.split("?>").next().unwrap_or_default();
+    if ["iso-8859-1", "latin1", "latin-1", "windows-1252", "us-ascii"].iter().any(|e| declaration.contains(e)) {
+        return Ok(bytes.iter().map(|b| *b as char).collect());
+    }
+    let good = std::str::from_utf8(&bytes).map_or_else(|e| e.valid_up_to(), str::len);
+    let line = bytes[..good].iter().filter(|b| **b == b'\n').count() + 1;
+    let line_start = bytes[..good].iter().rposition(|b| *b == b'\n').map_or(0, |n| n + 1);
+    let column = String::from_utf8_lossy(&bytes[line_start..good]).chars().count() + 1;
+    let message = format!(
+        "{}:{line}:{column}: error[{}]: this is not UTF-8, and the file names no other encoding",
+        path.display(),
+        plcc_diag::codes::XML_SYNTAX
+    );
+    Err(Failure { code: 1, message })
+}
+
 /// A source's text: UTF-8 or, if that fails, ISO-8859-1 (semantics.md \[L1\]).
 pub fn read_source(path: &Path) -> Result<String, Failure> {
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")) {
-        return Err(Failure::usage(format!("`{}`: PLCopen XML is not implemented yet", path.display())));
-    }
     let bytes = std::fs::read(path).map_err(|e| Failure::io("read", path, e))?;
     if bytes.len() > u32::MAX as usize / 2 {
         return Err(Failure::device(format!("`{}` is larger than 2 GB", path.display())));
     }
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
+        Err(e) if is_xml(path) => xml_text(path, e.into_bytes())?,
         Err(e) => e.into_bytes().iter().map(|b| *b as char).collect(),
     };
     Ok(match text.strip_prefix('\u{feff}') {

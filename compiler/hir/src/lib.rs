@@ -28,6 +28,7 @@ pub mod init;
 mod initial;
 mod lints;
 mod literal;
+pub mod network;
 mod open_array;
 mod operators;
 mod place;

@@ -79,7 +79,8 @@ impl<'a> Cx<'a> {
                 let pointer = *kind == ast::RefKind::PointerTo;
                 plain(self.defs.types.intern(Type::Ref { pointer, target }))
             }
-            ast::TypeExprKind::Error => Resolved::error(),
+            // The check of the body gives it the type of its value.
+            ast::TypeExprKind::Inferred(_) | ast::TypeExprKind::Error => Resolved::error(),
         }
     }
 

@@ -28,6 +28,9 @@ index_vec::define_index_type! {
     pub struct SourceId = u32;
 }
 
+/// The most passes of nested loops between two [`Inst::Poll`]s.
+pub const UNPOLLED_PASSES: u64 = 4096;
+
 /// All code of one resource, or of several that were joined ([`resources`](crate::resources)).
 #[derive(Debug, Clone, Default)]
 pub struct Program {

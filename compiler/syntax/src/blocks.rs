@@ -36,13 +36,27 @@ pub fn split(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter)
 }
 
 /// A body that stands alone: one slice that starts with `StartBody`.
-pub fn body(text: &str, lexed: &Lexed, profile: Profile, report: &mut Reporter) -> Vec<Token> {
+///
+/// `start` is where it begins in `text`, `language` its marker if that is known.
+pub fn body(
+    text: &str,
+    start: u32,
+    language: Option<Tok>,
+    lexed: &Lexed,
+    profile: Profile,
+    report: &mut Reporter,
+) -> Vec<Token> {
     let mut blocks = Blocks::new(text, lexed, profile, report);
+    blocks.start = start;
     // A POU around it keeps every rule in one place; its words are no tokens of the text.
-    let opener = Token::inserted(Tok::Program, 0);
+    let opener = Token::inserted(Tok::Program, start);
     blocks.stack.push(Frame::new(Construct::Program, opener, None, None));
-    blocks.out.push(Token::inserted(Tok::StartBody, 0));
-    blocks.start_body();
+    blocks.out.push(Token::inserted(Tok::StartBody, start));
+    match language {
+        Some(Tok::BodyIl) => blocks.start_body_as(Phase::Il, Tok::BodyIl),
+        Some(_) => blocks.start_body_as(Phase::St, Tok::BodySt),
+        None => blocks.start_body(),
+    }
     while blocks.at < lexed.tokens.len() && !blocks.stack.is_empty() {
         blocks.step();
     }
@@ -189,6 +203,8 @@ struct Blocks<'a, 'd> {
     tokens: &'a [Token],
     /// See [`Lexed`].
     rest_is_comment: bool,
+    /// Where the source begins in the text.
+    start: u32,
     /// The next token.
     at: usize,
     profile: Profile,
@@ -217,6 +233,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
             text,
             tokens: &lexed.tokens,
             rest_is_comment: lexed.rest_is_comment,
+            start: 0,
             at: 0,
             profile,
             report,
@@ -256,7 +273,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
 
     /// Where the last token of the source before the next one ends.
     fn previous_end(&self) -> u32 {
-        self.tokens[..self.at].last().map_or(0, |t| t.end)
+        self.tokens[..self.at].last().map_or(self.start, |t| t.end)
     }
 
     /// Emits the next token as a token of `kind`.

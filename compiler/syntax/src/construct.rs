@@ -26,6 +26,10 @@ pub enum Parsed {
     Expr(Box<Expr>),
     /// Behind `StartBody`: the body and the ACTIONs in it.
     Body(Box<(Body, Vec<Action>)>),
+    /// Behind `StartType`.
+    Type(Box<TypeExpr>),
+    /// Behind `StartInit`.
+    Init(Box<Init>),
 }
 
 /// What stands in the parentheses of a type: a length, the bounds of a subrange or values of an enumeration.

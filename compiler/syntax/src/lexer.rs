@@ -12,6 +12,9 @@ use crate::report::Reporter;
 use crate::token::{Tok, Token, word_kind};
 use plcc_diag::codes;
 
+/// Stands for nothing: in the texts of XML files it fills the place that character references took. No XML file holds it.
+pub const FILLER: u8 = 0x01;
+
 /// What a text consists of.
 #[derive(Debug, Default)]
 pub struct Lexed {
@@ -25,14 +28,25 @@ pub struct Lexed {
 
 /// Cuts `text` (at most 4 GiB) into tokens.
 pub fn lex(text: &str, report: &mut Reporter) -> Lexed {
+    lex_part(text, 0, false, report)
+}
+
+/// Cuts the part of an XML file that begins at byte `start` and ends with `text` into tokens. Positions count from the start
+/// of `text`; [`FILLER`]s count as blanks.
+pub fn lex_xml(text: &str, start: usize, report: &mut Reporter) -> Lexed {
+    lex_part(text, start, true, report)
+}
+
+fn lex_part(text: &str, start: usize, fillers: bool, report: &mut Reporter) -> Lexed {
     let mut lexer = Lexer {
         text,
         bytes: text.as_bytes(),
-        at: 0,
+        at: start,
+        fillers,
         first: true,
         nested_comments: true,
         bad_until: 0,
-        out: Lexed { tokens: Vec::with_capacity(text.len() / 4), ..Lexed::default() },
+        out: Lexed { tokens: Vec::with_capacity((text.len() - start) / 4), ..Lexed::default() },
         report,
     };
     while lexer.at < lexer.bytes.len() {
@@ -45,6 +59,8 @@ struct Lexer<'t, 'r, 'd> {
     text: &'t str,
     bytes: &'t [u8],
     at: usize,
+    /// The text is a part of an XML file.
+    fillers: bool,
     /// No token on this line yet.
     first: bool,
     /// Off after the first comment that only ends when nesting is not counted.
@@ -83,6 +99,7 @@ impl Lexer<'_, '_, '_> {
             b'{' => self.pragma(),
             b'\'' | b'"' => self.string(),
             b'%' => self.address(),
+            FILLER if self.fillers => self.at += 1,
             _ => self.sign(c),
         }
     }
@@ -178,7 +195,7 @@ impl Lexer<'_, '_, '_> {
                 i += 1;
             }
         }
-        let end = end.unwrap_or_else(|| {
+        let end = end.or_else(|| self.loose_comment(first_end)).unwrap_or_else(|| {
             let (open, close) = if open == b'(' { ("(*", "*)") } else { ("/*", "*/") };
             let mut message = self.report.at(
                 codes::UNCLOSED_COMMENT,
@@ -200,6 +217,21 @@ impl Lexer<'_, '_, '_> {
         });
         self.first |= self.bytes[self.at..end].contains(&b'\n');
         self.at = end;
+    }
+
+    /// Where an unclosed comment in an XML file ends all the same: editors of PLCopen XML write comments that do not nest,
+    /// and one on the last line of a text hides nothing.
+    fn loose_comment(&mut self, first_end: Option<usize>) -> Option<usize> {
+        if !self.fillers {
+            return None;
+        }
+        let rest = &self.text[self.at..];
+        let end = first_end.or_else(|| (!rest.trim_end().contains('\n')).then_some(self.bytes.len()))?;
+        self.nested_comments &= first_end.is_none();
+        let start = self.at as u32;
+        let message = self.report.at(codes::LOOSE_COMMENT, start, start + 2, "this comment is not closed");
+        self.report.push(message.help("write `*)` where it ends; comments nest"));
+        Some(end)
     }
 
     fn pragma(&mut self) {

@@ -12,6 +12,7 @@ mod lexer;
 mod recover;
 mod report;
 mod token;
+mod xml;
 
 #[allow(missing_docs, clippy::all, unused_imports, unused_parens)]
 mod grammar {
@@ -45,8 +46,11 @@ pub fn parse_file(file: FileId, text: &str, profile: Profile, diags: &mut Diagno
             items.push(*item);
         }
     }
-    ast::File { items, pragmas: lexed.pragmas, doubtful: report.doubtful(text, &lexed.tokens) }
+    ast::File { items, pragmas: lexed.pragmas, doubtful: report.doubtful(text, &lexed.tokens), places: Vec::new() }
 }
+
+/// Reads a PLCopen TC6 XML file. Mistakes are reported and leave error nodes.
+pub use xml::parse_xml;
 
 /// Parses an expression that stands alone, such as a watch. `None` if it is none; reported then.
 pub fn parse_expression(file: FileId, text: &str, diags: &mut Diagnostics) -> Option<ast::Expr> {
@@ -55,7 +59,7 @@ pub fn parse_expression(file: FileId, text: &str, diags: &mut Diagnostics) -> Op
     tokens.insert(0, Token::inserted(Tok::StartExpr, 0));
     match recover::parse(&Context::new(file, text), tokens, &mut report)? {
         Parsed::Expr(e) => Some(*e),
-        Parsed::Item(_) | Parsed::Body(_) => None,
+        _ => None,
     }
 }
 
@@ -69,7 +73,7 @@ pub fn parse_body(
 ) -> (ast::Body, Vec<ast::Action>) {
     let mut report = Reporter::new(file, diags);
     let lexed = lexer::lex(text, &mut report);
-    let tokens = blocks::body(text, &lexed, profile, &mut report);
+    let tokens = blocks::body(text, 0, None, &lexed, profile, &mut report);
     match recover::parse(&Context::new(file, text), tokens, &mut report) {
         Some(Parsed::Body(body)) => *body,
         _ => (ast::Body::St(Vec::new()), Vec::new()),

@@ -241,6 +241,10 @@ tokens! {
     StartExpr "an expression";
     /// Before a body alone
     StartBody "a body";
+    /// Before a type alone
+    StartType "a type";
+    /// Before an initial value alone
+    StartInit "an initial value";
 }
 
 impl Tok {

@@ -14,7 +14,10 @@ use plcc_mir::interp::Interp;
 use plcc_mir::ir::Program;
 use plcc_runtime::engine::{Engine, InitFn, NativeEngine, Part, Region, ScanFn};
 use plcc_runtime::image::Image;
+
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// CPU time of this process, milliseconds.
 pub fn cpu_ms() -> f64 {
@@ -45,7 +48,8 @@ impl Front {
     pub fn new(texts: &[(&str, &str)], profile: Profile) -> Result<Self, String> {
         let mut sources = SourceMap::new();
         let ids: Vec<_> = texts.iter().map(|(name, text)| (sources.add(*name, *text), profile)).collect();
-        let project = Project { name: "bench".into(), ..Project::default() };
+        let mut project = Project::default();
+        project.name = "bench".into();
         let front = Self::check(sources, &ids, project);
         if front.parsed.diags.has_errors() {
             let list = front.parsed.diags.sorted();
@@ -113,6 +117,26 @@ impl Back {
         Interpreter(Interp::new(&self.compiled.program))
     }
 
+    /// The reference interpreter, which adds up how many operations it executes.
+    pub fn counting_interpreter(&self) -> (impl Engine + use<>, Arc<AtomicU64>) {
+        let operations = Arc::new(AtomicU64::new(0));
+        (Counting { interp: Interp::new(&self.compiled.program), operations: Arc::clone(&operations) }, operations)
+    }
+
+    /// CPU milliseconds of each pass of the optimiser over a program of the plain lowering, in the order of their first run.
+    pub fn passes_ms(&self) -> Vec<(&'static str, f64)> {
+        let mut program = self.compiled.program.clone();
+        let mut passes: Vec<(&'static str, f64)> = Vec::new();
+        for pass in plcc_mir::opt::passes() {
+            let ms = timed(|| (pass.run)(&mut program)).1;
+            match passes.iter_mut().find(|(name, _)| *name == pass.name) {
+                Some((_, sum)) => *sum += ms,
+                None => passes.push((pass.name, ms)),
+            }
+        }
+        passes
+    }
+
     /// Code in memory, and the CPU milliseconds to make it.
     pub fn jit(&self) -> (impl Engine + use<>, f64) {
         let (code, ms) = timed(|| plcc_codegen::jit::compile(&self.compiled.program));
@@ -130,6 +154,22 @@ impl Back {
         link::shared(&self.object(), path).map_err(|e| e.message)?;
         // SAFETY: the object has no initialisers but those of the runtime archive, and these entry points.
         unsafe { Shared::load(path, "plc_app_init", "plc_app_scan") }
+    }
+}
+
+struct Counting {
+    interp: Interp,
+    operations: Arc<AtomicU64>,
+}
+
+impl Engine for Counting {
+    fn init(&mut self, mem: &mut Region, cold: bool) {
+        self.interp.init(mem.as_mut_slice(), cold);
+    }
+    fn scan(&mut self, part: &mut Part, task: u32, now_ns: i64) -> u32 {
+        let (status, operations) = self.interp.scan_counted(part.as_mut_slice(), task, now_ns);
+        self.operations.fetch_add(operations, Ordering::Relaxed);
+        status
     }
 }
 

@@ -49,6 +49,8 @@ pub struct ProgramReport {
     pub lanes: Vec<LaneReport>,
     /// CPU milliseconds of each stage of the compiler, in its order.
     pub compile_ms: Vec<(&'static str, f64)>,
+    /// CPU milliseconds of each pass of the optimiser.
+    pub passes_ms: Vec<(&'static str, f64)>,
 }
 
 /// What a lane took.
@@ -70,6 +72,8 @@ pub struct LaneReport {
     pub code_bytes: Option<u64>,
     /// Instructions a cycle.
     pub instructions: Option<Instructions>,
+    /// Operations that the interpreter executes in a cycle, mean.
+    pub operations: Option<f64>,
 }
 
 /// Instructions that a cycle executes.
@@ -95,6 +99,7 @@ impl LaneReport {
             undisturbed_worst_ns: times.floors.worst(),
             code_bytes: None,
             instructions: None,
+            operations: None,
         }
     }
 }
@@ -146,6 +151,14 @@ pub mod figure {
     /// The mean instructions of a cycle.
     pub fn mean_instructions(lane: &LaneReport) -> Option<f64> {
         lane.instructions.map(|i| i.mean)
+    }
+    /// Operations of the interpreter.
+    pub fn operations(lane: &LaneReport) -> Option<f64> {
+        lane.operations
+    }
+    /// Nanoseconds that the interpreter takes for an operation.
+    pub fn ns_an_operation(lane: &LaneReport) -> Option<f64> {
+        lane.operations.filter(|n| *n > 0.0).map(|n| lane.median_ns / n)
     }
     /// Machine code.
     pub fn code_bytes(lane: &LaneReport) -> Option<f64> {
@@ -247,6 +260,23 @@ impl Report {
             program.compile_ms.iter().for_each(|(_, ms)| out.push_str(&format!(" {ms:.2} |")));
             let _ = writeln!(out, " {:.2} |", program.total_compile_ms());
         }
+        out
+    }
+
+    /// What the passes of the optimiser took, over all programs.
+    pub fn passes(&self, heading: &str, text: &str) -> String {
+        let mut sums: Vec<(&str, f64)> = Vec::new();
+        for (name, ms) in self.programs.iter().flat_map(|p| &p.passes_ms) {
+            match sums.iter_mut().find(|(n, _)| n == name) {
+                Some((_, sum)) => *sum += ms,
+                None => sums.push((name, *ms)),
+            }
+        }
+        if sums.is_empty() {
+            return String::new();
+        }
+        let mut out = format!("\n## {heading}\n\n{text}\n\n| pass | CPU ms |\n|---|---:|\n");
+        sums.iter().for_each(|(name, ms)| out.push_str(&format!("| {name} | {ms:.2} |\n")));
         out
     }
 

@@ -151,12 +151,29 @@ fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
             condition: match &transition.condition {
                 ast::Condition::St(e) => text(e.span),
                 ast::Condition::Il(il) => lines(il.span),
+                ast::Condition::Steps(_, e) => text(e.span),
+                ast::Condition::Network(network) => drawn_condition(network),
             },
             from: steps(&transition.from)?,
             to: steps(&transition.to)?,
         });
     }
     Ok(chart)
+}
+
+/// A condition that is drawn, in a few words.
+fn drawn_condition(network: &ast::Network) -> String {
+    let end = network.elements.iter().find(|e| matches!(e.kind, ast::ElementKind::Condition));
+    let from = end.and_then(|e| e.inputs.first()).and_then(|p| p.connections.first()).map(|c| c.from);
+    let element = network.elements.iter().find(|e| Some(e.id) == from);
+    match element.map(|e| &e.kind) {
+        Some(ast::ElementKind::In { value: e, .. } | ast::ElementKind::Contact { variable: e, .. }) => {
+            ast::print::print_expr(e)
+        }
+        Some(ast::ElementKind::Block { ty, instance: None }) => format!("{}(...)", ty.text),
+        Some(ast::ElementKind::Block { instance: Some(instance), .. }) => ast::print::print_expr(instance),
+        _ => "...".into(),
+    }
 }
 
 /// All charts below each other, with headings where there are several or a cycle is shown.

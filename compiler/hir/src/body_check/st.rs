@@ -29,6 +29,24 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, scope: PouId, stmts: &'a [ast::Stmt]) -
     Body { stmts, temps: st.c.temps, labels: st.label_count }
 }
 
+/// Checks statements that stand before the condition of a transition; labels are numbered from `labels` on.
+pub(crate) fn check_part<'a>(c: &mut Checker<'_, 'a>, stmts: &'a [ast::Stmt], labels: &mut u32) -> Vec<Stmt> {
+    let mut st = St {
+        c: Checker { cx: &mut *c.cx, scope: c.scope, temps: std::mem::take(&mut c.temps) },
+        loops: Vec::new(),
+        labels: FxHashMap::default(),
+        outer: FxHashSet::default(),
+        inner: FxHashSet::default(),
+        label_count: *labels,
+    };
+    st.declare_labels(stmts);
+    let stmts = st.list(stmts);
+    st.check_labels();
+    *labels = st.label_count;
+    c.temps = st.c.temps;
+    stmts
+}
+
 /// A loop around the statement that is being checked.
 struct Loop {
     /// The control variable of a FOR, and where it is named.
@@ -124,6 +142,12 @@ impl<'a> St<'_, 'a> {
     }
 
     fn assign(&mut self, target: &'a ast::Expr, value: &'a ast::Expr) -> Option<StmtKind> {
+        if let Some(var) = self.untyped(target) {
+            let value = self.c.any_value(value);
+            self.c.cx.defs.vars[var].ty = value.ty;
+            let place = self.target(target)?;
+            return (value.ty != Types::ERROR).then_some(StmtKind::Assign { target: place, value });
+        }
         let Some(place) = self.target(target) else {
             // Mistakes in the value are worth their own message.
             self.c.operand(value, None);
@@ -136,6 +160,18 @@ impl<'a> St<'_, 'a> {
             return None;
         }
         Some(StmtKind::Assign { target: place, value })
+    }
+
+    /// The variable that a network declared for a value, if this is the first one that it takes.
+    fn untyped(&self, target: &ast::Expr) -> Option<VarId> {
+        let ast::ExprKind::Name(name) = &target.kind else { return None };
+        if !name.text.starts_with('$') {
+            return None;
+        }
+        let Found::Var(var) = self.c.lookup(name) else { return None };
+        let (ty, _) = self.c.cx.var_slots[var].decl?;
+        let inferred = matches!(ty.kind, ast::TypeExprKind::Inferred(_));
+        (inferred && self.c.cx.defs.vars[var].ty == Types::ERROR).then_some(var)
     }
 
     /// `r ?= s`: the reference if it is one to the target's type, else NULL (\[R1\]). Without inheritance the types decide.

@@ -25,14 +25,16 @@ pub struct Activation {
 /// How many arguments a body of the standard library may have.
 const MAX_RT_ARGS: usize = 16;
 
-/// Runs `entry` to its end or to an uncaught fault, whose number it returns.
-pub fn run(
+/// Runs `entry` to its end or to an uncaught fault, whose number it returns. With `COUNT` it counts the operations; without,
+/// that costs nothing.
+pub fn run<const COUNT: bool>(
     code: &Code,
     registers: &mut [u64],
     calls: &mut Vec<Activation>,
     mem: &mut [u8],
     entry: FuncId,
     frame: u32,
+    operations: &mut u64,
 ) -> u32 {
     calls.clear();
     let mut func_id = entry;
@@ -253,6 +255,9 @@ pub fn run(
     }
 
     loop {
+        if COUNT {
+            *operations += 1;
+        }
         specialised!(dispatch);
         pc += 1;
     }

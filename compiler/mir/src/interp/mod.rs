@@ -82,12 +82,26 @@ impl Interp {
     /// # Panics
     /// As [`Interp::scan`].
     pub fn scan_part(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> u32 {
-        let Some(&entry) = self.tasks.get(task as usize) else { return 0 };
+        self.execute::<false>(mem, task, now_ns).0
+    }
+
+    /// The same, and how many operations it took.
+    ///
+    /// # Panics
+    /// As [`Interp::scan`].
+    pub fn scan_counted(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> (u32, u64) {
+        self.execute::<true>(mem, task, now_ns)
+    }
+
+    fn execute<const COUNT: bool>(&mut self, mem: &mut [u8], task: u32, now_ns: i64) -> (u32, u64) {
+        let Some(&entry) = self.tasks.get(task as usize) else { return (0, 0) };
         let part = self.parts[task as usize];
         let mem = &mut mem[..part.bytes.max(HEADER_BYTES) as usize];
         mem[CLOCK_NS as usize..][..8].copy_from_slice(&now_ns.to_le_bytes());
         mem[FAULT_CODE as usize..][..4].fill(0);
-        exec::run(&self.code, &mut self.registers, &mut self.calls, mem, entry, part.frame_base)
+        let (registers, calls, mut operations) = (&mut self.registers, &mut self.calls, 0);
+        let status = exec::run::<COUNT>(&self.code, registers, calls, mem, entry, part.frame_base, &mut operations);
+        (status, operations)
     }
 }
 

@@ -16,7 +16,7 @@
 
 use super::func::{FuncLower, Loop};
 use super::place::{Access, constant};
-use crate::ir::ValueId;
+use crate::ir::{UNPOLLED_PASSES, ValueId};
 use plcc_diag::{Span, bug};
 use plcc_hir::Type;
 use plcc_hir::body::{Expr, Place, Stmt, StmtKind};
@@ -24,9 +24,6 @@ use plcc_hir::elem_of;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr};
-
-/// The most passes of nested loops between two polls.
-const UNPOLLED_PASSES: u64 = 4096;
 
 /// The step.
 #[derive(Clone, Copy)]

@@ -6,6 +6,7 @@
 //!
 //! The order is a table, [`passes`]; the tests run the interpreter after each of its rows.
 
+mod aggregates;
 mod algebra;
 mod alias;
 mod clean;
@@ -18,6 +19,7 @@ mod inline;
 mod loops;
 mod promote;
 mod proven;
+mod ranges;
 mod rewrite;
 mod scale;
 mod select;
@@ -49,13 +51,16 @@ pub fn passes() -> &'static [Pass] {
     const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
     const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
+    const RANGES: Pass = Pass { name: "ranges", run: |p| each(p, ranges::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
+        Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
         FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
-        SELECT, TIDY, FORWARD, DEAD_STORES, TIDY,
-        PROMOTE, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
+        RANGES, TIDY,
+        PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
         SELECT, TIDY,
         Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
     ];

@@ -149,6 +149,11 @@ fn plan(
     let reals = chosen.iter().any(|v| !func.values[*v].is_int());
     // A place that one arm leaves alone is read and written back.
     let extra = stores.iter().filter(|(_, _, values)| values.contains(&None)).count();
+    // Where only one arm assigns, a branch around it costs little and no memory; it stays but for a single value that is
+    // there already.
+    if extra > 0 && (stores.len() > 1 || cost > 1) {
+        return None;
+    }
     if reals || stores.len() > STORES || stores.len() + chosen.len() > CHOICES || cost + extra > COST {
         return None;
     }

@@ -1,6 +1,6 @@
 //! Declarations: POUs, variables, types, initialisers.
 
-use super::{Expr, IlBody, Name, SfcBody, Stmt};
+use super::{Expr, IlBody, Name, Network, SfcBody, Stmt};
 use plcc_diag::Span;
 use smol_str::SmolStr;
 
@@ -45,7 +45,7 @@ pub struct Action {
     pub span: Span,
 }
 
-/// A body in one of the text notations.
+/// A body in one of the notations.
 #[derive(Debug, Clone)]
 pub enum Body {
     /// Structured Text; also the empty body.
@@ -54,6 +54,8 @@ pub enum Body {
     Il(IlBody),
     /// Sequential Function Chart.
     Sfc(SfcBody),
+    /// Ladder Diagram or Function Block Diagram; `hir::network` makes Structured Text of it before anything is checked.
+    Network(Network),
 }
 
 /// `VAR ... END_VAR`.
@@ -198,6 +200,8 @@ pub enum TypeExprKind {
         /// The target type.
         target: Box<TypeExpr>,
     },
+    /// That of the expression, or of the first value that is assigned: what `hir::network` declares for a connection.
+    Inferred(Option<Box<Expr>>),
     /// What could not be parsed; reported already.
     Error,
 }

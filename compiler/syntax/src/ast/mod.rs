@@ -1,4 +1,4 @@
-//! The syntax tree of the text notations. It says what was written and where; it knows no types and resolves no names.
+//! The syntax tree of all notations. It says what was written and where; it knows no types and resolves no names.
 
 // Nodes are built once and then only matched: patterns without boxes are worth more than their size.
 #![allow(clippy::large_enum_variant)]
@@ -7,6 +7,7 @@ pub mod config;
 pub mod decl;
 pub mod expr;
 pub mod il;
+pub mod network;
 pub mod print;
 pub mod sfc;
 pub mod st;
@@ -15,6 +16,7 @@ pub use config::*;
 pub use decl::*;
 pub use expr::*;
 pub use il::*;
+pub use network::*;
 pub use sfc::*;
 pub use st::*;
 
@@ -49,6 +51,19 @@ pub struct File {
     /// Behind a mistake of syntax: statements that were mended by a guess, and uses of names whose declaration could not be
     /// read. A further message about them would not be a further mistake.
     pub doubtful: Vec<Span>,
+    /// Parts of a PLCopen XML file and how messages name them; inner ones behind the outer ones that hold them.
+    pub places: Vec<Place>,
+}
+
+/// A part of a PLCopen XML file that users know by another name than its line.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// Where in the file.
+    pub span: Span,
+    /// `Main`, or `Main: coil ...`.
+    pub name: String,
+    /// It is a text, whose lines count from its start.
+    pub text: bool,
 }
 
 /// A top-level declaration.

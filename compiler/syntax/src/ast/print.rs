@@ -72,7 +72,42 @@ impl Printer {
                     }
                 }
             }),
+            Body::Network(network) => self.network("body", network),
         }
+    }
+
+    /// Elements on a line each, with what their inputs are connected to.
+    fn network(&mut self, head: &str, network: &Network) {
+        let notation = match network.notation {
+            Notation::Fbd => "FBD",
+            Notation::Ld => "LD",
+        };
+        self.block(&format!("{head} {notation}"), |p| {
+            for element in &network.elements {
+                let order = element.order.map_or(String::new(), |n| format!(", order {n}"));
+                let own = match &element.kind {
+                    ElementKind::Contact { modifier: m, .. }
+                    | ElementKind::Coil { modifier: m, .. }
+                    | ElementKind::In { modifier: m, .. }
+                    | ElementKind::Out { modifier: m, .. } => modifier(*m),
+                    _ => String::new(),
+                };
+                p.block(&format!("{}{order}{own}", element.describe()), |p| {
+                    for pin in &element.inputs {
+                        let sources = pin.connections.iter().map(|c| match &c.pin {
+                            Some(name) => format!("{}.{name}", c.from),
+                            None => c.from.to_string(),
+                        });
+                        let literal = pin.literal.iter().map(print_expr);
+                        let sources: Vec<String> = sources.chain(literal).collect();
+                        p.line(&format!("in `{}`{} from {}", pin.name, modifier(pin.modifier), sources.join(", ")));
+                    }
+                    for pin in element.outputs.iter().filter(|p| !p.name.is_empty()) {
+                        p.line(&format!("out `{}`{}", pin.name, modifier(pin.modifier)));
+                    }
+                });
+            }
+        });
     }
 
     fn statements(&mut self, statements: &[Stmt]) {
@@ -190,8 +225,31 @@ impl Printer {
         match &t.condition {
             Condition::St(e) => self.line(&format!("{head} when {}", print_expr(e))),
             Condition::Il(il) => self.block(&format!("{head} when IL"), |p| p.il(il)),
+            Condition::Network(network) => self.network(&format!("{head} when"), network),
+            Condition::Steps(statements, value) => self.block(&format!("{head} when"), |p| {
+                p.statements(statements);
+                p.line(&print_expr(value));
+            }),
         }
     }
+}
+
+fn modifier(modifier: Modifier) -> String {
+    let mut text = String::new();
+    if modifier.negated {
+        text.push_str(" negated");
+    }
+    text.push_str(match modifier.edge {
+        Some(Edge::Rising) => " rising",
+        Some(Edge::Falling) => " falling",
+        None => "",
+    });
+    text.push_str(match modifier.storage {
+        Some(Storage::Set) => " set",
+        Some(Storage::Reset) => " reset",
+        None => "",
+    });
+    text
 }
 
 fn case_label(label: &CaseLabel) -> String {

@@ -1,6 +1,6 @@
 //! Sequential Function Chart as text.
 
-use super::{Expr, IlBody, Name};
+use super::{Expr, IlBody, Name, Network, Stmt};
 use plcc_diag::Span;
 
 /// A chart. ACTION blocks stand in the POU's `actions`.
@@ -73,4 +73,9 @@ pub enum Condition {
     St(Expr),
     /// `: instructions`.
     Il(IlBody),
+    /// A network that ends in an element [`Condition`](super::ElementKind::Condition), or in a variable or coil with the
+    /// transition's name.
+    Network(Box<Network>),
+    /// What `hir::network` makes of it: statements, then the value.
+    Steps(Vec<Stmt>, Expr),
 }

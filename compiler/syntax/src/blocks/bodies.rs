@@ -14,6 +14,11 @@ impl Blocks<'_, '_> {
         } else {
             (Phase::St, Tok::BodySt)
         };
+        self.start_body_as(phase, marker);
+    }
+
+    /// Begins a body in a language that is known.
+    pub(super) fn start_body_as(&mut self, phase: Phase, marker: Tok) {
         let start = self.peek(0).start;
         self.emit(Token::inserted(marker, start));
         if let Some(frame) = self.stack.last_mut() {

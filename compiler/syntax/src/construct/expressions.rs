@@ -2,7 +2,7 @@
 
 use super::Context;
 use crate::ast::*;
-use crate::lexer::{is_date_prefix, is_duration_prefix};
+use crate::lexer::{FILLER, is_date_prefix, is_duration_prefix};
 use plcc_diag::Span;
 use smol_str::SmolStr;
 
@@ -48,6 +48,7 @@ impl Context<'_> {
                 let name = self.name(l, l + hash as u32);
                 Literal { kind, prefix: Some(name), text: rest.into() }
             }
+            _ if text.as_bytes().contains(&FILLER) => plain(plain_kind(text), &text.replace(char::from(FILLER), "")),
             _ => plain(plain_kind(text), text),
         };
         self.expr(ExprKind::Literal(literal), 0, l, r)

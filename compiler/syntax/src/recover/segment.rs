@@ -47,6 +47,8 @@ pub(super) fn is_boundary(kind: Tok) -> bool {
             | StartItem
             | StartExpr
             | StartBody
+            | StartType
+            | StartInit
             | Step
             | Transition
             | Action
@@ -165,7 +167,7 @@ impl Recovery<'_, '_> {
             Surroundings::Resource if only_bad => return self.drop_boundary(segment.end),
             Surroundings::Resource => self.replace(segment.clone(), boundary != Tok::Semi),
             Surroundings::Other => {
-                if before == Tok::StartItem || before == Tok::StartExpr || only_bad {
+                if matches!(before, Tok::StartItem | Tok::StartExpr | Tok::StartType | Tok::StartInit) || only_bad {
                     return false;
                 }
                 self.replace(segment.clone(), boundary != Tok::Semi);

@@ -135,6 +135,13 @@ impl<'a> Builder<'_, '_, 'a> {
             let condition = match &transition.condition {
                 ast::Condition::St(e) => Some(Condition { stmts: Vec::new(), value: self.c.condition(e) }),
                 ast::Condition::Il(il) => il_condition(self.c, self.labels, il),
+                ast::Condition::Steps(statements, value) => {
+                    let stmts = crate::body_check::st::check_part(self.c, statements, self.labels);
+                    Some(Condition { stmts, value: self.c.condition(value) })
+                }
+                ast::Condition::Network(network) => {
+                    plcc_diag::bug!("a network that was not lowered: {:?}", network.span)
+                }
             };
             let condition = condition.filter(|c| c.value.ty != crate::Types::ERROR);
             let (Some(from), Some(to), Some(condition)) = (from, to, condition) else {

@@ -185,6 +185,7 @@ fn type_text(ty: &TypeExpr) -> String {
             };
             format!("{word} {}", type_text(target))
         }
+        TypeExprKind::Inferred(_) => "<inferred>".into(),
         TypeExprKind::Error => "<error>".into(),
     }
 }

@@ -1,7 +1,7 @@
 //! Bars of ratios as SVG: a group of bars for each program, one for each lane, a line at 1. The scale is logarithmic, so that
 //! twice and half are equally far from the line. Colours follow the reader's light or dark scheme.
 
-use plcc::bench::report::{Figure, Report};
+use crate::bench::report::{Figure, Report};
 use std::fmt::Write;
 
 const STYLE: &str = "\

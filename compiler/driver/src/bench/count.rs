@@ -1,14 +1,12 @@
 //! Instructions of single cycles, counted by `valgrind --tool=callgrind`: the same in every run on every machine, whatever else
 //! the machine does.
 //!
-//! The bench starts itself under valgrind; that process ([`run`]) marks each cycle with client requests, which do nothing
+//! The program starts itself under valgrind; that process ([`run`]) marks each cycle with client requests, which do nothing
 //! outside valgrind, and its output file says what was executed between the marks. The emulated processor lacks the newest
 //! vector instructions, so C for exactly this machine is not among the lanes.
 
-use crate::lanes::{Choice, INTERVAL_NS, Lanes};
-use crate::programs::Program;
-use plcc::bench::lane::{Cycle, OneTask, Rows};
-use plcc::bench::report::Instructions;
+use crate::bench::lane::{Cycle, Lane, OneTask, Rows};
+use crate::bench::report::{Instructions, Report};
 use plcc_runtime::engine::NativeEngine;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,25 +15,23 @@ use std::rc::Rc;
 
 /// Cycles that are counted, from the start on.
 pub const CYCLES: u64 = 200;
-/// The argument with which the bench starts itself.
-pub const FLAG: &str = "--count";
 
 /// By program and lane.
 pub type Counts = BTreeMap<(String, String), Instructions>;
 
-/// Counts for programs with these names; `None` where there is no valgrind.
-pub fn count(names: &[&str], folder: &Path) -> Result<Option<Counts>, String> {
+/// Starts this executable with `args`, with which it must [`run`] lanes, under valgrind; `None` where there is none.
+pub fn count(args: &[&str], folder: &Path) -> Result<Option<Counts>, String> {
     if cfg!(not(target_arch = "x86_64")) || Command::new("valgrind").arg("--version").output().is_err() {
         return Ok(None);
     }
     let exe = std::env::current_exe().map_err(|e| e.to_string())?;
     let out = folder.join("callgrind.out");
     let done = Command::new("valgrind")
-        .args(["--tool=callgrind", "--quiet", "--collect-atstart=no", "--combine-dumps=yes", "--compress-strings=no"])
+        .args(["--tool=callgrind", "--quiet", "--instr-atstart=no", "--collect-atstart=no"])
+        .args(["--combine-dumps=yes", "--compress-strings=no", "--dump-line=no"])
         .arg(format!("--callgrind-out-file={}", out.display()))
         .arg(exe)
-        .arg(FLAG)
-        .args(names)
+        .args(args)
         .stdout(Stdio::null())
         .output()
         .map_err(|e| format!("cannot start valgrind: {e}"))?;
@@ -75,21 +71,31 @@ fn read(text: &str) -> Counts {
 /// Program and lane of an empty scan.
 const EMPTY: &str = "empty";
 
-/// What runs under valgrind.
-pub fn run(programs: &[&Program], folder: &Path) -> Result<(), String> {
+/// What runs under valgrind: the lanes of a program.
+pub fn run(program: &str, lanes: &mut [Lane], cycles: u64) {
+    // What compiled the program is no business of callgrind: each dump would go through it.
+    request(START_INSTRUMENTATION, 0);
     let mut empty = empty();
     empty.restart();
     (0..10).for_each(|cycle| marked(&mut empty, EMPTY, EMPTY, cycle));
-    for program in programs {
-        let mut lanes = Lanes::new(program, Choice::Counted, CYCLES, folder)?;
-        for prepared in &mut lanes.lanes {
-            prepared.lane.subject.restart();
-            for cycle in 0..CYCLES {
-                marked(prepared.lane.subject.as_mut(), program.name, prepared.lane.name, cycle);
-            }
+    for lane in lanes {
+        lane.subject.restart();
+        (0..cycles).for_each(|cycle| marked(lane.subject.as_mut(), program, lane.name, cycle));
+    }
+    request(STOP_INSTRUMENTATION, 0);
+}
+
+/// Adds them to a report.
+pub fn add(report: &mut Report, counts: &Counts) {
+    for program in &mut report.programs {
+        for lane in &mut program.lanes {
+            lane.instructions = counts.get(&(program.name.clone(), lane.name.to_string())).copied();
         }
     }
-    Ok(())
+    report.method.push(format!(
+        "*Instructions*: callgrind counts every instruction of the first {CYCLES} cycles, cycle by cycle, libraries with it, less \
+         those of an empty scan. The numbers are the same in every run."
+    ));
 }
 
 fn marked(subject: &mut dyn Cycle, program: &str, lane: &str, cycle: u64) {
@@ -99,7 +105,7 @@ fn marked(subject: &mut dyn Cycle, program: &str, lane: &str, cycle: u64) {
     let status = subject.execute(cycle);
     request(TOGGLE_COLLECT, 0);
     request(DUMP_STATS_AT, mark.as_ptr() as u64);
-    assert_eq!(status, 0, "a benchmark program faulted");
+    assert_eq!(status, 0, "a program that is counted must not fault");
 }
 
 fn empty() -> OneTask<NativeEngine> {
@@ -109,12 +115,14 @@ fn empty() -> OneTask<NativeEngine> {
     }
     // SAFETY: they touch no memory.
     let engine = unsafe { NativeEngine::new(init, scan) };
-    OneTask::new(engine, 64, Rows { offset: 0, bytes: 0, table: Rc::default() }, INTERVAL_NS)
+    OneTask::new(engine, 64, Rows { offset: 0, bytes: 0, table: Rc::default() }, 1)
 }
 
 /// Requests of callgrind: `'C' << 24 | 'T' << 16`, then in the order of `callgrind.h`.
 const TOGGLE_COLLECT: u64 = 0x4354_0002;
 const DUMP_STATS_AT: u64 = 0x4354_0003;
+const START_INSTRUMENTATION: u64 = 0x4354_0004;
+const STOP_INSTRUMENTATION: u64 = 0x4354_0005;
 
 /// A client request (`valgrind.h`); without valgrind it does nothing.
 #[cfg(target_arch = "x86_64")]
