@@ -15,12 +15,14 @@ mod fold;
 mod forward;
 mod frames;
 mod hoist;
+mod induction;
 mod inline;
 mod loops;
 mod promote;
 mod proven;
 mod ranges;
 mod rewrite;
+mod rotate;
 mod scale;
 mod select;
 mod ssa;
@@ -52,6 +54,7 @@ pub fn passes() -> &'static [Pass] {
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
     const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
     const RANGES: Pass = Pass { name: "ranges", run: |p| each(p, ranges::run) };
+    const INDUCTION: Pass = Pass { name: "induction", run: |p| each(p, induction::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
         TIDY,
@@ -61,8 +64,10 @@ pub fn passes() -> &'static [Pass] {
         SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, TIDY,
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
-        SELECT, TIDY,
-        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
+        SELECT, TIDY, INDUCTION, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, INDUCTION, TIDY, HOIST, TIDY,
+        Pass { name: "rotate", run: |p| each(p, rotate::run) },
+        Pass { name: "clean", run: |p| each(p, clean::run) },
     ];
     PASSES
 }
