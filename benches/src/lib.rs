@@ -2,6 +2,7 @@
 //! `cargo bench`; see `report.rs`.
 
 pub mod charts;
+pub mod command;
 pub mod interface;
 pub mod lanes;
 pub mod programs;

@@ -64,6 +64,17 @@ pub fn precise_timers() {
     unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1) };
 }
 
+/// Page faults of the calling thread so far.
+pub fn page_faults() -> u64 {
+    // SAFETY: `usage` is valid for writing; without the call it stays 0.
+    let usage = unsafe {
+        let mut usage: libc::rusage = std::mem::zeroed();
+        libc::getrusage(libc::RUSAGE_THREAD, &mut usage);
+        usage
+    };
+    (usage.ru_minflt + usage.ru_majflt) as u64
+}
+
 /// Touches the pages of the stack that a cycle may use, so that none faults later.
 #[inline(never)]
 pub fn touch_stack() {

@@ -139,9 +139,13 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
             retain: shared_retain,
             charts: Charts::new(image, &resolver),
             cycles: flags.cycles,
+            page_faults: None,
             report: &report,
         };
         let end = scan.run();
+        if let Some(stats) = scan.workers.first_mut().and_then(|(w, _)| w.stats.as_mut()) {
+            stats.page_faults = scan.page_faults;
+        }
         (end, scan.workers.into_iter().map(|(w, _)| w).collect())
     };
     let on_stdout = [trace_path, flags.vcd.as_deref()].contains(&Some(Path::new("-")));

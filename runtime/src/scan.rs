@@ -7,11 +7,15 @@ use crate::engine::{Part, Region};
 use crate::image::Image;
 use crate::path::Resolver;
 use crate::retain::Writer;
+use crate::realtime;
 use crate::signals;
 use crate::stimulus::Stimulus;
 use crate::trace::Trace;
 use crate::vcd::Vcd;
 use crate::worker::{Halt, Meeting, Worker};
+
+/// Cycles before this one touch what they touch for the first time.
+const WARM_FROM: u64 = 17;
 
 /// Tells the statistics of workers.
 pub type Report<'r> = dyn Fn(&[(Worker, i64)]) + 'r;
@@ -34,6 +38,8 @@ pub struct Scan<'a> {
     pub charts: Charts,
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
+    /// Page faults of this thread in cycles behind the first ones.
+    pub page_faults: Option<u64>,
     /// Tells the statistics, when somebody asked for them.
     pub report: &'a Report<'a>,
 }
@@ -65,6 +71,8 @@ impl Scan<'_> {
     /// Runs cycles until one of the ends.
     pub fn run(&mut self) -> End {
         let end = self.cycles();
+        // Until here the number is that of before the first counted cycle.
+        self.page_faults = self.page_faults.map(|before| realtime::page_faults() - before);
         match (self.flush(), end) {
             (Err(e), End::Stopped) => End::Failed(e),
             (Err(e), End::Fault(told)) if !e.is_empty() => End::Failed(format!("{told}{e}")),
@@ -84,6 +92,9 @@ impl Scan<'_> {
             }) else {
                 break;
             };
+            if cycle == WARM_FROM {
+                self.page_faults = Some(realtime::page_faults());
+            }
             if let Some(stimulus) = &mut self.stimulus {
                 stimulus.apply(cycle, self.mem.as_mut_slice());
             }

@@ -31,6 +31,8 @@ pub struct Execution {
 #[derive(Debug)]
 pub struct Stats {
     tasks: Vec<TaskStats>,
+    /// Page faults in cycles behind the first ones; `None` where nobody counted.
+    pub page_faults: Option<u64>,
 }
 
 #[derive(Debug)]
@@ -74,7 +76,7 @@ impl Reaction {
 impl Stats {
     /// Empty.
     pub fn new(tasks: usize) -> Self {
-        Self { tasks: (0..tasks).map(|_| TaskStats::new()).collect() }
+        Self { tasks: (0..tasks).map(|_| TaskStats::new()).collect(), page_faults: None }
     }
 
     /// One execution.
@@ -115,7 +117,7 @@ impl Stats {
                 reaction: self.reaction(n, image.tasks[n].deadline_ns),
             })
             .collect();
-        if json { as_json(&rows) } else { as_text(&rows) }
+        if json { as_json(&rows, self.page_faults) } else { as_text(&rows, self.page_faults) }
     }
 
     /// The histograms as a drawing.
@@ -133,7 +135,7 @@ struct Row<'s> {
     reaction: Reaction,
 }
 
-fn as_json(rows: &[Row]) -> String {
+fn as_json(rows: &[Row], page_faults: Option<u64>) -> String {
     let rows = rows.iter().map(|Row { name, stats, counts, reaction }| {
         let deadline = reaction.deadline_ns.map_or("null".into(), |ns| ns.to_string());
         format!(
@@ -154,10 +156,11 @@ fn as_json(rows: &[Row]) -> String {
             name = quoted(name),
         )
     });
-    format!("{{\"tasks\":[{}]}}\n", rows.collect::<Vec<_>>().join(","))
+    let page_faults = page_faults.map_or("null".into(), |n| n.to_string());
+    format!("{{\"tasks\":[{}],\"page_faults\":{page_faults}}}\n", rows.collect::<Vec<_>>().join(","))
 }
 
-fn as_text(rows: &[Row]) -> String {
+fn as_text(rows: &[Row], page_faults: Option<u64>) -> String {
     let width = rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(14) + 2;
     let mut out = String::new();
     // Writing to a String does not fail.
@@ -196,6 +199,9 @@ fn as_text(rows: &[Row]) -> String {
             let _ = write!(out, "; deadline {deadline}: {}", if reaction.missed() { "MISSED" } else { "kept" });
         }
         out.push('\n');
+    }
+    if let Some(page_faults) = page_faults {
+        let _ = writeln!(out, "page faults in cycles: {page_faults}");
     }
     out
 }
@@ -276,7 +282,10 @@ fn values(h: &Histogram<u64>) -> [(&'static str, u64); 6] {
 }
 
 fn json_values(h: &Histogram<u64>) -> String {
-    values(h).map(|(name, value)| format!("\"{name}\":{value}")).join(",")
+    let values = values(h).map(|(name, value)| format!("\"{name}\":{value}")).join(",");
+    let counts: Vec<String> =
+        h.iter_recorded().map(|v| format!("[{},{}]", v.value_iterated_to(), v.count_at_value())).collect();
+    format!("{values},\"histogram\":[{}]", counts.join(","))
 }
 
 /// A JSON string; names are IEC identifiers and dots.
@@ -311,10 +320,12 @@ mod tests {
         assert_eq!(
             stats().report(&image, 0..1, &counts, true),
             "{\"tasks\":[{\"task\":\"Fast\",\"cycles\":3,\"overruns\":4,\"skipped\":5,\"min_ns\":100,\"mean_ns\":200,\
-             \"p50_ns\":200,\"p99_ns\":300,\"p99_9_ns\":300,\"max_ns\":300,\"wake_up\":{\"min_ns\":50,\"mean_ns\":50,\
-             \"p50_ns\":50,\"p99_ns\":50,\"p99_9_ns\":50,\"max_ns\":50},\"period\":{\"min_ns\":1000,\"mean_ns\":1000,\
-             \"p50_ns\":1000,\"p99_ns\":1000,\"p99_9_ns\":1000,\"max_ns\":1000},\"reaction\":{\"max_cycle_ns\":300,\
-             \"release_delay_ns\":900,\"worst_ns\":1500,\"observed_ns\":1300,\"deadline_ns\":1500,\"missed\":false}}]}\n"
+             \"p50_ns\":200,\"p99_ns\":300,\"p99_9_ns\":300,\"max_ns\":300,\"histogram\":[[100,1],[200,1],[300,1]],\
+             \"wake_up\":{\"min_ns\":50,\"mean_ns\":50,\"p50_ns\":50,\"p99_ns\":50,\"p99_9_ns\":50,\"max_ns\":50,\
+             \"histogram\":[[50,3]]},\"period\":{\"min_ns\":1000,\"mean_ns\":1000,\"p50_ns\":1000,\"p99_ns\":1000,\
+             \"p99_9_ns\":1000,\"max_ns\":1000,\"histogram\":[[1000,2]]},\"reaction\":{\"max_cycle_ns\":300,\
+             \"release_delay_ns\":900,\"worst_ns\":1500,\"observed_ns\":1300,\"deadline_ns\":1500,\"missed\":false}}],\
+             \"page_faults\":null}\n"
         );
         let text = stats().report(&image, 0..1, &counts, false);
         let words: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().collect();
