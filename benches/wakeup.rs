@@ -42,8 +42,11 @@ int main(int argc, char **argv) {
         while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL)) {}
         clock_gettime(CLOCK_MONOTONIC, &now);
         latency[n] = (now.tv_sec - next.tv_sec) * 1000000000LL + now.tv_nsec - next.tv_nsec;
-        next.tv_nsec += interval;
-        while (next.tv_nsec >= 1000000000L) { next.tv_nsec -= 1000000000L; next.tv_sec++; }
+        /* The grid stays; releases that have passed are skipped, as the program does. */
+        do {
+            next.tv_nsec += interval;
+            while (next.tv_nsec >= 1000000000L) { next.tv_nsec -= 1000000000L; next.tv_sec++; }
+        } while (now.tv_sec > next.tv_sec || (now.tv_sec == next.tv_sec && now.tv_nsec > next.tv_nsec));
     }
     for (long n = 0; n < cycles && n < 1 << 20; n++) printf("%lld\n", (long long)latency[n]);
     return 0;
@@ -94,7 +97,7 @@ fn latencies(folder: &Path, rounds: u64, cycles: u64, realtime: bool) {
         done.stdout.lines().filter_map(|l| l.parse::<u64>().ok()).collect::<Vec<_>>()
     };
     let ours = || {
-        let mut args = vec!["--cycles", &cycles_text, "--interval", "1ms", "--stats", "json"];
+        let mut args = vec!["--cycles", &cycles_text, "--interval", "1ms", "--overrun", "skip", "--stats", "json"];
         args.extend(realtime.then_some("--realtime"));
         let done: Done = run("./empty", folder, &args);
         assert_eq!(done.code, 0, "{}", done.stderr);
@@ -122,7 +125,10 @@ fn latencies(folder: &Path, rounds: u64, cycles: u64, realtime: bool) {
             }
         }
     }
-    println!("wake-up latency [ns], {rounds} rounds of {cycles} cycles of 1 ms{}", if realtime { ", SCHED_FIFO" } else { "" });
+    println!(
+        "wake-up latency [ns], {rounds} rounds of {cycles} cycles of 1 ms{}",
+        if realtime { ", SCHED_FIFO" } else { "" }
+    );
     println!("{:<14}{:>10}{:>10}{:>10}{:>10}{:>10}", "", "p50", "p90", "p99", "p99.9", "max");
     for (name, counts) in [("C loop", &first), ("C loop again", &second), ("plcc", &program)] {
         print!("{name:<14}");
@@ -187,7 +193,11 @@ fn cost(folder: &Path) {
             args.extend(&flags);
             let done = run("valgrind", folder, &args);
             let line = done.stderr.lines().find(|l| l.contains(word))?.to_string();
-            let number = line[line.find(word)? + word.len()..].trim_start_matches([' ', ':']).split([' ', '\n']).next()?.replace(',', "");
+            let number = line[line.find(word)? + word.len()..]
+                .trim_start_matches([' ', ':'])
+                .split([' ', '\n'])
+                .next()?
+                .replace(',', "");
             number.parse::<u64>().ok()
         };
         let per = |tool, word| {
@@ -197,7 +207,11 @@ fn cost(folder: &Path) {
         let instructions = per("--tool=callgrind", "Collected");
         let allocations = per("--tool=memcheck", "total heap usage");
         let shown = |n: Option<f64>| n.map_or("not measured (valgrind)".into(), |n| format!("{n:.3}"));
-        println!("empty program, {name}: {} instructions, {} allocations a cycle", shown(instructions), shown(allocations));
+        println!(
+            "empty program, {name}: {} instructions, {} allocations a cycle",
+            shown(instructions),
+            shown(allocations)
+        );
     }
     let done = run("./empty", folder, &["--cycles", "20000", "--interval", "100us", "--stats", "json"]);
     let value: serde_json::Value = serde_json::from_str(&done.stdout).expect("--stats json");

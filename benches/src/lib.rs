@@ -3,6 +3,7 @@
 
 pub mod charts;
 pub mod command;
+pub mod compile_time;
 pub mod interface;
 pub mod lanes;
 pub mod programs;

@@ -300,7 +300,8 @@ fn overwriting_in_place_is_torn_here() {
         let disks = Rc::new(RefCell::new(Disks { left: u64::MAX, ..Disks::default() }));
         let mut disk = Simulated(Rc::clone(&disks), false);
         let write = |disk: &mut Simulated, value: u8| disk.write_at(0, &[value; 4096]);
-        let made = disk.create().and_then(|()| write(&mut disk, 1)).and_then(|()| disk.sync()).and_then(|()| disk.replace());
+        let made =
+            disk.create().and_then(|()| write(&mut disk, 1)).and_then(|()| disk.sync()).and_then(|()| disk.replace());
         made.and_then(|()| write(&mut disk, 2)).expect("there is power");
         disks.borrow_mut().cut(&mut random);
         let bytes = disk.read().ok().flatten().expect("the file");
