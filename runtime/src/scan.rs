@@ -71,6 +71,11 @@ impl Scan<'_> {
     /// Runs cycles until one of the ends.
     pub fn run(&mut self) -> End {
         let end = self.cycles();
+        if let Some((elapsed_ns, ticks)) = self.clock.end() {
+            for (worker, _) in &mut self.workers {
+                worker.end(elapsed_ns, ticks);
+            }
+        }
         // Until here the number is that of before the first counted cycle.
         self.page_faults = self.page_faults.map(|before| realtime::page_faults() - before);
         match (self.flush(), end) {

@@ -117,6 +117,9 @@ pub fn run<'a>(threads: Threads<'a, '_, '_>) -> (End, Vec<Worker<'a>>) {
                     }
                     let mut clock = Clock::on_grid(interval_ns, policy, start_ns);
                     let done = cycles(&mut worker, &mut part, shared, retain, &mut clock, until_ns, report);
+                    if let Some((elapsed_ns, ticks)) = clock.end() {
+                        worker.end(elapsed_ns, ticks);
+                    }
                     if let Err(halt) = done {
                         halted.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(halt);
                         // All resources stop (semantics.md [E4]).

@@ -121,6 +121,14 @@ impl Worker<'_> {
         })
     }
 
+    /// The run has ended.
+    pub fn end(&mut self, elapsed_ns: i64, ticks: u64) {
+        self.schedule.end(elapsed_ns, ticks);
+        if let Some(stats) = &mut self.stats {
+            stats.elapsed_ns = Some(elapsed_ns);
+        }
+    }
+
     /// A tick has ended without a fault.
     pub fn finish_cycle(&mut self, cycle: u64, part: &Part) {
         if let Some(retain) = &mut self.retain {
