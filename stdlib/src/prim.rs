@@ -77,6 +77,10 @@ pub enum PrimOp {
     Sub,
     /// Wraps.
     Mul,
+    /// The upper half of the product of two signed numbers of twice the width; I64.
+    MulHiS,
+    /// The upper half of the product of two unsigned numbers of twice the width; I64.
+    MulHiU,
     /// Toward zero; `MIN / -1 = MIN`. The divisor is not 0 (a check stands before it); `eval` gives 0.
     DivS,
     /// The divisor is not 0; `eval` gives 0.
@@ -239,6 +243,7 @@ impl PrimOp {
             FPromote => repr == Repr::F32,
             FDemote => repr == Repr::F64,
             BitsF => matches!(repr, Repr::I32 | Repr::I64),
+            MulHiS | MulHiU => repr == Repr::I64,
             Zext(to) | Sext(to) => repr.is_int() && to.is_int() && to.bytes() > repr.bytes(),
             Wrap(to) => repr.is_int() && to.is_int() && to.bytes() < repr.bytes(),
             _ => repr.is_int(),

@@ -1,7 +1,9 @@
 //! What single passes of the optimiser achieve, on small programs: how much of a kind of instruction is left. That the
 //! programs still mean the same is tested for each of them as well.
 
+mod divide;
 mod ranges;
+mod unroll;
 
 use plcc_hir::Profile;
 use plcc_mir::ir::{Inst, Program};

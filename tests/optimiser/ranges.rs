@@ -135,7 +135,7 @@ fn operations_become_cheaper() {
         })
     };
     for body in [
-        "FOR i := 0 TO 9 DO k := k + i / n; END_FOR; IF n <= 0 THEN n := 5; END_IF;",
+        "FOR i := 0 TO 9 DO k := k + i / n; IF k > 50 THEN EXIT; END_IF; END_FOR; IF n <= 0 THEN n := 5; END_IF;",
         "k := UINT_TO_DINT(u) / (UINT_TO_DINT(u) + 3); u := u + 1;",
         "k := UINT_TO_DINT(u) MOD (UINT_TO_DINT(u) + 3); u := u + 1;",
     ] {

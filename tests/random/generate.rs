@@ -648,7 +648,9 @@ impl Generator {
     fn for_loop(&mut self, depth: u32) {
         let Some(var) = self.free_loop_vars.pop() else { return self.assign() };
         let from = self.rng.i64(-4..5);
-        let to = from + self.rng.i64(-4..7);
+        // Sometimes long: what is done with loops depends on their passes.
+        let longest = if self.loops == 0 && self.chance(15) { 40 } else { 7 };
+        let to = from + self.rng.i64(-4..longest);
         let by = match self.rng.u32(0..5) {
             0 => " BY 2".to_string(),
             1 => " BY -1".to_string(),

@@ -38,6 +38,8 @@ pub fn emit(b: &mut FunctionBuilder, op: PrimOp, repr: Repr, args: &[Value]) -> 
         Add => b.ins().iadd(x, y),
         Sub => b.ins().isub(x, y),
         Mul => b.ins().imul(x, y),
+        MulHiS => b.ins().smulhi(x, y),
+        MulHiU => b.ins().umulhi(x, y),
         DivS | DivU | RemS | RemU => division(b, op, repr, x, y),
         Neg => b.ins().ineg(x),
         And => b.ins().band(x, y),

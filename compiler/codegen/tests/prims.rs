@@ -11,9 +11,9 @@ const OUT: u32 = 64;
 fn all_ops() -> Vec<PrimOp> {
     use PrimOp::*;
     let mut ops = vec![
-        Add, Sub, Mul, DivS, DivU, RemS, RemU, Neg, And, Or, Xor, Not, Shl, ShrU, ShrS, Rotl, Rotr, MinS, MinU, MaxS,
-        MaxU, Eq, Ne, LtS, LeS, LtU, LeU, FAdd, FSub, FMul, FDiv, FNeg, FAbs, FSqrt, FCeil, FFloor, FTrunc, FNearest,
-        FEq, FNe, FLt, FLe, Select, FPromote, FDemote, FBits, BitsF,
+        Add, Sub, Mul, MulHiS, MulHiU, DivS, DivU, RemS, RemU, Neg, And, Or, Xor, Not, Shl, ShrU, ShrS, Rotl, Rotr,
+        MinS, MinU, MaxS, MaxU, Eq, Ne, LtS, LeS, LtU, LeU, FAdd, FSub, FMul, FDiv, FNeg, FAbs, FSqrt, FCeil, FFloor,
+        FTrunc, FNearest, FEq, FNe, FLt, FLe, Select, FPromote, FDemote, FBits, BitsF,
     ];
     for to in Repr::ALL {
         if to.is_int() {

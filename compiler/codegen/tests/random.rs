@@ -179,6 +179,8 @@ impl Generator<'_> {
             Add,
             Sub,
             Mul,
+            MulHiS,
+            MulHiU,
             DivS,
             DivU,
             RemS,
@@ -239,8 +241,13 @@ impl Generator<'_> {
         if !kind || !op.accepts(repr) {
             return;
         }
+        let by_constant = matches!(op, DivS | DivU | RemS | RemU) && self.random.chance(50);
         let args: Vec<ValueId> = (0..op.arity())
-            .map(|n| if op == Select && n == 0 { self.truth() } else { self.value(op.operand(repr, n)) })
+            .map(|n| match (op, n) {
+                (Select, 0) => self.truth(),
+                (_, 1) if by_constant => self.constant(repr),
+                _ => self.value(op.operand(repr, n)),
+            })
             .collect();
         let v = self.b.op(op, repr, &args);
         let v = self.settle(v);
@@ -350,7 +357,9 @@ impl Generator<'_> {
         let kinds = [self.random.pick(&Repr::ALL), self.random.pick(&Repr::ALL)];
         let reprs: Vec<Repr> = (0..self.random.below(6)).map(|_| self.random.pick(&kinds)).collect();
         let start: Vec<ValueId> = reprs.iter().map(|r| self.value(*r)).collect();
-        let count = self.b.number(Repr::I8, 1 + self.random.below(4));
+        // Mostly so short that nothing is left of the loop, sometimes so long that several passes become one.
+        let most = if self.loops == 0 && self.random.chance(20) { 40 } else { 4 };
+        let count = self.b.number(Repr::I8, 1 + self.random.below(most));
         self.b.jump(head, &[&[count], &start[..]].concat());
         let left = self.b.block_param(head, Repr::I8);
         let carried: Vec<ValueId> = reprs.iter().map(|r| self.b.block_param(head, *r)).collect();
@@ -522,7 +531,7 @@ fn generate(seed: u64) -> Program {
         callees.push(callee);
     }
     // What the constants among the references point into.
-    Program { addressable: (HEADER_BYTES, 1024), ..program(funcs, 1) }
+    Program { addressable: vec![(HEADER_BYTES, 1024)], ..program(funcs, 1) }
 }
 
 /// What lies in the globals before a scan.

@@ -38,6 +38,8 @@ fn eval_int(op: PrimOp, repr: Repr, a: u64, b: u64) -> u64 {
         Add => a.wrapping_add(b) & mask,
         Sub => a.wrapping_sub(b) & mask,
         Mul => a.wrapping_mul(b) & mask,
+        MulHiS => ((i128::from(sa) * i128::from(sb)) >> bits) as u64 & mask,
+        MulHiU => ((u128::from(a) * u128::from(b)) >> bits) as u64,
         DivS if sb == 0 => 0,
         DivS => sa.wrapping_div(sb) as u64 & mask,
         DivU => a.checked_div(b).unwrap_or(0),

@@ -62,7 +62,10 @@ pub fn simplify(op: PrimOp, repr: Repr, args: Args, defs: &Defs) -> Option<Simpl
 fn commutes(op: PrimOp) -> bool {
     use PrimOp::*;
     // Minimum and maximum of integers; sums and products of reals commute too, to the last bit.
-    matches!(op, Add | Mul | And | Or | Xor | MinS | MinU | MaxS | MaxU | Eq | Ne | FAdd | FMul | FEq | FNe)
+    matches!(
+        op,
+        Add | Mul | MulHiS | MulHiU | And | Or | Xor | MinS | MinU | MaxS | MaxU | Eq | Ne | FAdd | FMul | FEq | FNe
+    )
 }
 
 fn unary(op: PrimOp, repr: Repr, x: ValueId, defs: &Defs) -> Option<Simpler> {

@@ -11,6 +11,7 @@ mod algebra;
 mod alias;
 mod clean;
 mod dead_stores;
+mod divide;
 mod fold;
 mod forward;
 mod frames;
@@ -26,6 +27,7 @@ mod rotate;
 mod scale;
 mod select;
 mod ssa;
+mod unroll;
 
 use crate::ir::{Func, Program};
 
@@ -57,6 +59,7 @@ pub fn passes() -> &'static [Pass] {
     const INDUCTION: Pass = Pass { name: "induction", run: |p| each(p, induction::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
+        Pass { name: "references", run: alias::keep },
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
@@ -64,7 +67,10 @@ pub fn passes() -> &'static [Pass] {
         SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, TIDY,
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
-        SELECT, TIDY, INDUCTION, TIDY,
+        SELECT, TIDY,
+        Pass { name: "unroll", run: |p| each(p, unroll::run) }, TIDY, FORWARD, DEAD_STORES, TIDY,
+        Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, TIDY, INDUCTION, TIDY,
+        Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, INDUCTION, TIDY, HOIST, TIDY,
         Pass { name: "rotate", run: |p| each(p, rotate::run) },
         Pass { name: "clean", run: |p| each(p, clean::run) },

@@ -20,9 +20,9 @@
 //!
 //! The walks are near-linear: their number is bounded, and each looks only a few operations back from a condition.
 
-mod facts;
+pub(super) mod facts;
 mod improve;
-mod induction;
+pub(super) mod induction;
 mod interval;
 
 use super::fold::Def;
@@ -50,7 +50,14 @@ const SHRINKING: usize = 2;
 /// The pass.
 pub fn run(func: &mut Func) {
     if func.values.iter().any(|repr| repr.is_int()) {
-        Walker::new(func).run();
+        Walker::new(func).run(UNPOLLED_PASSES);
+    }
+}
+
+/// The pass when loops do several passes in one, so that their number tells nothing of polls: those in loops stay.
+pub fn run_late(func: &mut Func) {
+    if func.values.iter().any(|repr| repr.is_int()) {
+        Walker::new(func).run(0);
     }
 }
 
@@ -159,7 +166,8 @@ impl<'a> Walker<'a> {
         }
     }
 
-    fn run(mut self) {
+    /// Loops of up to `unpolled` passes need no poll.
+    fn run(mut self, unpolled: u64) {
         let circles = !self.loops.list.is_empty() || self.loops.tangled;
         if circles {
             let mut walks = 0;
@@ -182,7 +190,7 @@ impl<'a> Walker<'a> {
                 self.count_passes();
             }
         }
-        self.unpolled = self.loops.unpolled(self.func, UNPOLLED_PASSES);
+        self.unpolled = self.loops.unpolled(self.func, unpolled);
         self.mode = Mode::Rewrite;
         self.walk();
         self.replace.apply(self.func);

@@ -41,6 +41,29 @@ fn arithmetic_wraps_at_its_width() {
 }
 
 #[test]
+fn upper_halves_of_products() {
+    let max = u64::MAX;
+    let of = |op: PrimOp, a: u64, b: u64| eval(op, I64, &[a, b]);
+    // (2^64 - 1)^2 = 2^128 - 2^65 + 1.
+    assert_eq!(of(MulHiU, max, max), max - 1);
+    assert_eq!(of(MulHiU, 1 << 32, 1 << 32), 1);
+    assert_eq!(of(MulHiU, max, 1), 0);
+    assert_eq!(of(MulHiS, max, 1), max, "-1 * 1 = -1");
+    assert_eq!(of(MulHiS, max, max), 0, "-1 * -1 = 1");
+    assert_eq!(of(MulHiS, 1 << 63, 1 << 63), 1 << 62, "MIN * MIN = 2^126");
+    assert_eq!(of(MulHiS, 1 << 63, max >> 1), 0xC000_0000_0000_0000, "MIN * MAX = -2^126 + 2^63");
+    for a in edges(I64) {
+        for b in edges(I64) {
+            // Upper and lower half are the product.
+            let (sa, sb) = (i128::from(a as i64), i128::from(b as i64));
+            let low = u128::from(eval(Mul, I64, &[a, b]));
+            assert_eq!((i128::from(of(MulHiS, a, b) as i64) << 64) + low as i128, sa * sb, "{a:#x} {b:#x}");
+            assert_eq!((u128::from(of(MulHiU, a, b)) << 64) + low, u128::from(a) * u128::from(b), "{a:#x} {b:#x}");
+        }
+    }
+}
+
+#[test]
 fn bits_and_order() {
     pairs(And, |_, _, _, a, b| a & b);
     pairs(Or, |_, _, _, a, b| a | b);
@@ -168,9 +191,9 @@ fn reals_and_integers() {
 #[test]
 fn every_result_fits_its_representation() {
     let all = [
-        Add, Sub, Mul, DivS, DivU, RemS, RemU, Neg, And, Or, Xor, Not, Shl, ShrU, ShrS, Rotl, Rotr, MinS, MinU, MaxS,
-        MaxU, Eq, Ne, LtS, LeS, LtU, LeU, FAdd, FSub, FMul, FDiv, FNeg, FAbs, FSqrt, FCeil, FFloor, FTrunc, FNearest,
-        FEq, FNe, FLt, FLe, FPromote, FDemote, FBits, BitsF,
+        Add, Sub, Mul, MulHiS, MulHiU, DivS, DivU, RemS, RemU, Neg, And, Or, Xor, Not, Shl, ShrU, ShrS, Rotl, Rotr,
+        MinS, MinU, MaxS, MaxU, Eq, Ne, LtS, LeS, LtU, LeU, FAdd, FSub, FMul, FDiv, FNeg, FAbs, FSqrt, FCeil, FFloor,
+        FTrunc, FNearest, FEq, FNe, FLt, FLe, FPromote, FDemote, FBits, BitsF,
     ];
     let to = INTS.into_iter().flat_map(|r| [Zext(r), Sext(r), Wrap(r), FToS(r), FToU(r)]);
     let reals = [F32, F64].into_iter().flat_map(|r| [SToF(r), UToF(r)]);

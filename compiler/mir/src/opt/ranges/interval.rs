@@ -283,6 +283,14 @@ fn binary(op: PrimOp, repr: Repr, a: Interval, b: Interval) -> Interval {
                     .map_or(unsigned_limits(repr), |high| wrapped((u.0 * v.0, high), unsigned_limits(repr)));
             Interval::both(repr, wrapped(products, signed_limits(repr)), unsigned)
         }
+        MulHiS => {
+            let ends = [s.0 * t.0, s.0 * t.1, s.1 * t.0, s.1 * t.1];
+            signed(*ends.iter().min().unwrap_or(&0) >> repr.bits(), *ends.iter().max().unwrap_or(&0) >> repr.bits())
+        }
+        MulHiU => {
+            let high = |a: u64, b: u64| ((u128::from(a) * u128::from(b)) >> repr.bits()) as u64;
+            unsigned(high(au.0, bu.0), high(au.1, bu.1))
+        }
         DivU => unsigned(if bu.0 == 0 { 0 } else { au.0 / bu.1 }, au.1 / bu.0.max(1)),
         RemU if bu.0 > au.1 => a,
         RemU => unsigned(0, au.1.min(bu.1.saturating_sub(1))),
