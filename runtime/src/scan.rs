@@ -1,6 +1,5 @@
 //! The scan loop on one thread: all resources in order of declaration, and what is recorded of each cycle.
 
-use crate::charts::Charts;
 use crate::clock::{Clock, Tick};
 use crate::edges::Edges;
 use crate::engine::{Part, Region};
@@ -35,7 +34,6 @@ pub struct Scan<'a> {
     pub interval_ns: i64,
     /// Of what resources share.
     pub retain: Option<Writer>,
-    pub charts: Charts,
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
     /// Page faults of this thread in cycles behind the first ones.
@@ -109,10 +107,6 @@ impl Scan<'_> {
                     Halt::Driver(told) => End::Failed(told),
                 };
             }
-            let news = self.charts.check(cycle, self.mem.as_mut_slice());
-            if !news.is_empty() {
-                eprint!("{news}");
-            }
             if let Err(e) = self.record(cycle, tick) {
                 return End::Failed(e);
             }
@@ -140,7 +134,7 @@ impl Scan<'_> {
             };
             let mut alone = Alone { edges, home };
             worker.tick(cycle, tick, &mut part, &mut alone)?;
-            worker.finish_cycle(cycle, &part);
+            worker.finish_cycle(cycle, &mut part);
         }
         let first = &image.resources[0];
         let end = if several {

@@ -1,5 +1,6 @@
 //! One resource at work: which of its tasks run in a tick, and what happens around each execution.
 
+use crate::charts::Charts;
 use crate::clock::{Tick, monotonic_ns};
 use crate::edges::{Edges, Taken};
 use crate::engine::{Engine, Part};
@@ -32,6 +33,7 @@ pub struct Worker<'a> {
     pub stats: Option<Stats>,
     pub retain: Option<Writer>,
     pub history: Option<History>,
+    pub charts: Charts,
     /// The whole memory after a cold start, for tasks that start again after a fault.
     pub initial: Option<&'a [u8]>,
     pub taken: Taken,
@@ -130,7 +132,11 @@ impl Worker<'_> {
     }
 
     /// A tick has ended without a fault.
-    pub fn finish_cycle(&mut self, cycle: u64, part: &Part) {
+    pub fn finish_cycle(&mut self, cycle: u64, part: &mut Part) {
+        let news = self.charts.check(cycle, part.as_mut_slice());
+        if !news.is_empty() {
+            eprint!("{news}");
+        }
         if let Some(retain) = &mut self.retain {
             retain.capture(part.start(), part.as_slice());
         }
