@@ -1,7 +1,8 @@
 //! All programs in all lanes, in one run, to a report below `target/bench-report` (Markdown, JSON, SVG).
 //!
-//! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a tenth of the
-//! time; `cargo test -p plcc-benches --bench report -- --brief pid` prints medians at once. `cargo test` runs them for some cycles: every lane must give the same outputs after each cycle.
+//! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a third of the
+//! time, `--brief` prints medians of a few lanes at once and writes no report. `cargo test` runs all programs for some cycles:
+//! every lane must give the same outputs after each cycle.
 
 use plcc::bench::measure::{Plan, measure};
 use plcc::bench::report::{LaneAbout, LaneReport, ProgramReport, Report, figure, two, whole};
@@ -9,7 +10,7 @@ use plcc::bench::ticks::Scale;
 use plcc::bench::{count, machine, method, svg};
 use plcc_benches::lanes::{ABOUT, Choice, INTERP, JIT, JIT_NONE, LINKED, Lanes};
 use plcc_benches::programs::{PROGRAMS, Program};
-use plcc_benches::{reference, targets};
+use plcc_benches::{compile_time, reference, targets};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -135,15 +136,17 @@ fn write_report(programs: &[&Program], charts: &[Chart], plan: &Plan, folder: &P
         report.programs.push(one(program, plan, scale, folder).map_err(|e| format!("{}: {e}", program.name))?);
     }
     let charts = chart_report(charts, plan, scale)?;
+    let library = compile_time::oscat()?;
     report.machine.push(plcc::bench::load("after"));
     eprintln!("instructions");
     let names = programs.iter().map(|p| p.name);
-    match count::count(&std::iter::once(COUNT).chain(names).collect::<Vec<_>>(), folder)? {
-        Some(counts) => count::add(&mut report, &counts),
-        None => report.machine.push("there is no valgrind for this machine: instructions were not counted".into()),
+    match count::count(&std::iter::once(COUNT).chain(names).collect::<Vec<_>>(), folder) {
+        Ok(Some(counts)) => count::add(&mut report, &counts),
+        Ok(None) => report.machine.push("there is no valgrind for this machine: instructions were not counted".into()),
+        Err(e) => report.machine.push(format!("instructions were not counted: {e}")),
     }
     let out = out_folder();
-    let text = markdown(&report, &charts);
+    let text = markdown(&report, &charts, library);
     let write = |name: &str, text: &str| {
         let path = out.join(name);
         std::fs::write(&path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))
@@ -159,8 +162,9 @@ fn write_report(programs: &[&Program], charts: &[Chart], plan: &Plan, folder: &P
     Ok(())
 }
 
-fn markdown(report: &Report, charts: &Report) -> String {
+fn markdown(report: &Report, charts: &Report, library: Option<ProgramReport>) -> String {
     let base = &report.base;
+    let library = Report { programs: library.into_iter().collect(), ..Report::default() };
     [
         report.head(),
         targets::table(report),
@@ -190,7 +194,12 @@ fn markdown(report: &Report, charts: &Report) -> String {
         report.table("Code size", "Bytes of machine code, tables and libraries not counted.", figure::code_bytes, whole),
         report.compile_times(
             "Compile time",
-            "CPU milliseconds from source to running in the JIT, the standard function blocks with it; of the lane `jit`.",
+            "CPU milliseconds from source to running in the JIT, the standard function blocks with it; of the lane `jit`, the \
+             least of five runs.",
+        ),
+        library.compile_times(
+            "Compile time of a library",
+            "CPU milliseconds, every POU to an object file (`OSCAT` names the source).",
         ),
         report.passes("Passes of the optimiser", "CPU milliseconds over all programs; a pass that comes several times counts once."),
         report.table("Interpreter: operations of a cycle", "Mean.", figure::operations, whole),

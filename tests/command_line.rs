@@ -332,12 +332,16 @@ fn large_charts_are_proved_or_said_to_be_not_proved() {
 #[test]
 fn bench_reports() {
     let fault = "PROGRAM Main\nVAR n, z : INT; END_VAR\nn := n + 1;\nz := 10 / (5 - n);\nEND_PROGRAM\n";
+    let eno = "FUNCTION F : INT\nVAR_INPUT a, b : INT; END_VAR\nF := a / b;\nEND_FUNCTION\n\
+               PROGRAM Main\nVAR n, q : INT; ok : BOOL; END_VAR\nn := n + 1;\n\
+               q := F(EN := TRUE, a := 10, b := n MOD 3, ENO => ok);\nEND_PROGRAM\n";
     let endless = "PROGRAM Main\nVAR n : INT; END_VAR\nWHILE n = 0 DO\n  ;\nEND_WHILE;\nEND_PROGRAM\n";
     let f = folder_with(&[
         ("count.st", COUNTER),
         ("fault.st", fault),
         ("endless.st", endless),
         ("in.csv", "cycle,Main.n\n3,40\n"),
+        ("eno.st", eno),
     ]);
     // Without a path there is neither linker nor valgrind: both are said to be missing.
     let bench = |args: &[&str]| -> Done {
@@ -360,6 +364,9 @@ fn bench_reports() {
     assert_eq!(names, ["interpreter", "jit, opt none", "jit, no checks", "jit"]);
     assert!(lanes.iter().all(|l| l["median_ns"].as_f64().is_some_and(|ns| ns > 0.0)), "{lanes:?}");
     assert!(read("ratios.svg").starts_with("<svg "));
+    // Code without checks would not do the same where a fault is caught.
+    let done = bench(&["eno.st"]);
+    assert!(done.code == 0 && done.stdout.contains("`jit, no checks` was not measured"), "{done:?}");
     let done = bench(&["fault.st"]);
     assert_eq!((done.code, done.stdout.as_str()), (1, ""));
     assert!(done.stderr.contains("--> fault.st:4:") && done.stderr.ends_with("cycle 5\n"), "{}", done.stderr);

@@ -1,5 +1,6 @@
 //! The lanes of a program, and the proof that they all do the same.
 
+use crate::compile_time;
 use crate::interface::{Interface, Leaf, Side};
 use crate::programs::Program;
 use crate::reference::{self, Build, O2_COPY, Reference};
@@ -97,11 +98,11 @@ impl Lanes {
         let values: Vec<_> = (0..rows).map(|_| stimulus.cycle()).collect();
         let like = interface.inputs.c_rows(0, &values);
         let of = |back: &Back| interface.inputs.region_rows(back.image(), &values, &like);
-        let (jit, code_ms) = speed.jit();
+        let jit = speed.jit().0;
         let mut out = Self {
             lanes: Vec::new(),
             outputs: interface.outputs.clone(),
-            compile_ms: stages(&front, &speed, code_ms),
+            compile_ms: Vec::new(),
             passes_ms: Vec::new(),
             lines: program.sources.iter().map(|(_, text)| text.lines().count()).sum(),
         };
@@ -112,6 +113,7 @@ impl Lanes {
         }
         if choice == Choice::All {
             out.passes_ms = none.passes_ms();
+            out.compile_ms = compile_time::to_jit(program.sources, 5)?;
             for (prepared, back) in out.lanes.iter_mut().zip([&none, &speed]) {
                 prepared.operations = Some(operations(back, of(back), rows));
             }
@@ -135,11 +137,11 @@ impl Lanes {
         let front = Front::new(&[(name, text)], Profile::Strict)?;
         let none = front.compile("all", OptArg::None)?;
         let speed = front.compile("all", OptArg::Speed)?;
-        let (jit, code_ms) = speed.jit();
+        let jit = speed.jit().0;
         let mut out = Self {
             lanes: Vec::new(),
             outputs: Interface::watching(&["Main.total"], speed.image()).outputs,
-            compile_ms: stages(&front, &speed, code_ms),
+            compile_ms: compile_time::to_jit(&[(name, text)], 1)?,
             passes_ms: Vec::new(),
             lines: text.lines().count(),
         };
@@ -254,11 +256,6 @@ impl Lanes {
     pub fn output_count(&self) -> usize {
         self.outputs.leaves.len()
     }
-}
-
-fn stages(front: &Front, speed: &Back, code_ms: f64) -> Vec<(&'static str, f64)> {
-    let [parse, check] = front.cpu_ms;
-    vec![("parse", parse), ("check", check), ("lower, optimise", speed.cpu_ms), ("machine code", code_ms)]
 }
 
 /// Operations of the interpreter in a cycle, mean.

@@ -11,7 +11,7 @@ use crate::foreign_code;
 use crate::types::Type;
 use crate::visit::{self, Use, Visitor};
 use plcc_diag::{Code, Diagnostic, FileId, Severity, Span, codes};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Warns about the POUs of the user's files.
 pub(crate) fn run(cx: &mut Cx, units: &[Unit]) {
@@ -30,7 +30,7 @@ pub(crate) fn run(cx: &mut Cx, units: &[Unit]) {
         lint.variables(id, &mut found);
         if let Some(body) = cx.defs.bodies.get(id) {
             unreachable(&body.stmts, &mut found);
-            Calls { cx, out: &mut found }.list(&body.stmts, &mut Vec::new());
+            Calls { cx, out: &mut found }.list(&body.stmts, &mut Way::default());
         }
     }
     found.into_iter().for_each(|d| cx.push(d));
@@ -195,7 +195,6 @@ struct Calls<'c, 'a, 'o> {
 }
 
 /// Where an instance was called.
-#[derive(Clone, PartialEq, Eq)]
 struct Called {
     /// The instance.
     path: String,
@@ -205,15 +204,49 @@ struct Called {
 }
 
 impl Called {
-    /// Whether two calls are two places. `PT t`, then `IN t` in IL are not: each gives another input its value.
+    /// Whether two calls of an instance are two places. `PT t`, then `IN t` in IL are not: each gives another input its value.
     fn clashes(&self, other: &Self) -> bool {
-        let apart = self.only.is_some() && other.only.is_some() && self.only != other.only;
-        self.path == other.path && !apart
+        self.only.is_none() || other.only.is_none() || self.only == other.only
+    }
+}
+
+/// The calls on a way through a body, in their order.
+#[derive(Default)]
+struct Way {
+    calls: Vec<Called>,
+    /// Where the calls of an instance stand in `calls`.
+    by_path: FxHashMap<String, Vec<usize>>,
+    /// Those before do not meet what follows.
+    from: usize,
+}
+
+impl Way {
+    fn push(&mut self, call: Called) {
+        self.by_path.entry(call.path.clone()).or_default().push(self.calls.len());
+        self.calls.push(call);
+    }
+
+    /// The first call that is another place of the same instance.
+    fn first_clash(&self, call: &Called) -> Option<&Called> {
+        let same = self.by_path.get(&call.path)?.iter().filter(|n| **n >= self.from).map(|n| &self.calls[*n]);
+        same.into_iter().find(|c| c.clashes(call))
+    }
+
+    /// Takes the calls from a length on; gives those that may have been made when the way goes on.
+    fn cut(&mut self, length: usize) -> Vec<Called> {
+        let gone = self.from.clamp(length, self.calls.len()) - length;
+        let cut = self.calls.split_off(length);
+        for call in &cut {
+            if let Some(places) = self.by_path.get_mut(&call.path) {
+                places.retain(|n| *n < length);
+            }
+        }
+        cut.into_iter().skip(gone).collect()
     }
 }
 
 impl Calls<'_, '_, '_> {
-    fn list(&mut self, list: &[Stmt], called: &mut Vec<Called>) {
+    fn list(&mut self, list: &[Stmt], called: &mut Way) {
         for stmt in list {
             match &stmt.kind {
                 StmtKind::Call(call) => self.call(call, called),
@@ -230,7 +263,7 @@ impl Calls<'_, '_, '_> {
                 }
                 // A way that leaves here does not meet what follows.
                 StmtKind::Return | StmtKind::Exit | StmtKind::Continue | StmtKind::Label(_) | StmtKind::Jump(..) => {
-                    called.clear();
+                    called.from = called.calls.len();
                 }
                 StmtKind::Assign { .. } | StmtKind::Eval(_) => {}
             }
@@ -239,16 +272,18 @@ impl Calls<'_, '_, '_> {
 
     /// Of several branches one is taken: each starts with what was called before, and what any of them called may have
     /// been called afterwards.
-    fn branches<'b>(&mut self, bodies: impl Iterator<Item = &'b [Stmt]>, called: &mut Vec<Called>) {
-        let before = called.clone();
+    fn branches<'b>(&mut self, bodies: impl Iterator<Item = &'b [Stmt]>, called: &mut Way) {
+        let (before, from) = (called.calls.len(), called.from);
+        let mut found = Vec::new();
         for body in bodies {
-            let mut own = before.clone();
-            self.list(body, &mut own);
-            called.extend(own.into_iter().filter(|c| !before.contains(c)));
+            self.list(body, called);
+            found.extend(called.cut(before));
+            called.from = from;
         }
+        found.into_iter().for_each(|call| called.push(call));
     }
 
-    fn call(&mut self, call: &Call, called: &mut Vec<Called>) {
+    fn call(&mut self, call: &Call, called: &mut Way) {
         let Callee::Instance(place, _) = &call.callee else { return };
         // `t(IN := FALSE)` resets a timer before its call proper: all values are constants.
         let reset = !call.inputs.is_empty() && call.inputs.iter().all(|(_, e)| matches!(e.kind, ExprKind::Const(_)));
@@ -259,7 +294,7 @@ impl Calls<'_, '_, '_> {
             _ => None,
         };
         let here = Called { path, only, span: call.span };
-        match called.iter().find(|c| c.clashes(&here)) {
+        match called.first_clash(&here) {
             Some(first) => self.out.push(
                 Diagnostic::new(
                     codes::CALLED_TWICE,

@@ -44,8 +44,9 @@ pub struct Program {
     pub region_bytes: u32,
     /// Where the frames of a task start.
     pub frame_base: u32,
-    /// What references and pointers reach (start, length), besides what an [`Inst::AddressOf`] says.
-    pub addressable: (u32, u32),
+    /// What references reach, ranges (start, length): the addressable part; the optimiser adds what it finds the address
+    /// taken of, before it changes anything.
+    pub addressable: Vec<(u32, u32)>,
     /// What is not 0 at a cold start.
     pub initial: Vec<Segment>,
     /// Byte ranges (start, length) that a warm start keeps; sorted, disjoint.

@@ -11,6 +11,11 @@ use crate::value::prefix_type;
 ///
 /// A CHAR or WCHAR is not read here: its value is the first character, whatever that is.
 pub fn value(elem: Elem, text: &[u8]) -> u64 {
+    if matches!(elem.family(), Family::Signed | Family::Unsigned | Family::Bits)
+        && let Some(number) = short_decimal(text)
+    {
+        return number as u64 & elem.repr().mask();
+    }
     let text = ascii(text).trim_start_matches([' ', '\t']);
     match elem.family() {
         Family::Bool if text.get(..4).is_some_and(|t| t.eq_ignore_ascii_case("TRUE")) => 1,
@@ -20,6 +25,21 @@ pub fn value(elem: Elem, text: &[u8]) -> u64 {
         Family::Duration | Family::Date | Family::TimeOfDay | Family::DateTime => time(elem, text),
         Family::Char => 0,
     }
+}
+
+/// What nearly every text is: blanks, a minus, up to 18 digits. The rest is left to [`integer`].
+fn short_decimal(text: &[u8]) -> Option<i64> {
+    let blanks = text.iter().take_while(|c| matches!(c, b' ' | b'\t')).count();
+    let (negative, digits) = match &text[blanks..] {
+        [b'-', digits @ ..] => (true, digits),
+        digits => (false, digits),
+    };
+    let count = digits.iter().take_while(|c| c.is_ascii_digit()).count();
+    if !(1..=18).contains(&count) || matches!(digits.get(count), Some(b'#' | b'_')) {
+        return None;
+    }
+    let value = digits[..count].iter().fold(0, |value: i64, c| value * 10 + i64::from(c - b'0'));
+    Some(if negative { -value } else { value })
 }
 
 /// The characters before the first one outside ASCII: no value has such a character.

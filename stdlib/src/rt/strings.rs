@@ -9,7 +9,6 @@
 use crate::elem::{Elem, Family};
 use crate::literal::prefix;
 use crate::value;
-use std::ffi::CStr;
 use std::fmt;
 use std::ops::Range;
 
@@ -133,7 +132,19 @@ impl Unit for Narrow {
         bytes[n] = unit as u8;
     }
     fn before_zero(bytes: &[u8]) -> usize {
-        CStr::from_bytes_until_nul(bytes).map_or(bytes.len(), CStr::count_bytes)
+        // Strings are short: eight characters at once, without a call.
+        const LOW: u64 = 0x0101_0101_0101_0101;
+        let (words, rest) = bytes.as_chunks::<8>();
+        for (n, word) in words.iter().enumerate() {
+            let word = u64::from_le_bytes(*word);
+            // The lowest bit that is left marks the first zero.
+            let zeros = word.wrapping_sub(LOW) & !word & (LOW << 7);
+            if zeros != 0 {
+                return 8 * n + zeros.trailing_zeros() as usize / 8;
+            }
+        }
+        let zero = rest.iter().position(|unit| *unit == 0);
+        8 * words.len() + zero.unwrap_or(rest.len())
     }
 }
 
@@ -180,9 +191,33 @@ fn put<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Range<usize>) -> usize
     let Some(room) = units.checked_sub(1) else { return 0 };
     let n = n.min(dst.capacity as usize).min(room);
     let more = count::<U>(&src).min(dst.capacity as usize - n).min(room - n);
-    mem.copy_within(first::<U>(&src, more), start + n * U::BYTES);
+    copy(mem, first::<U>(&src, more), start + n * U::BYTES);
     U::set(&mut mem[start..], n + more, 0);
     n + more
+}
+
+/// Copies bytes. Most are few, and then a call of the system's library takes longer than the copy.
+fn copy(mem: &mut [u8], from: Range<usize>, to: usize) {
+    fn piece<const N: usize>(mem: &mut [u8], from: usize, to: usize) {
+        let piece: Option<[u8; N]> = mem[from..].first_chunk().copied();
+        if let (Some(piece), Some(target)) = (piece, mem[to..].first_chunk_mut()) {
+            *target = piece;
+        }
+    }
+    // Two pieces that may overlap each other; both are read where nothing was written, as the target overlaps no source.
+    match from.len() {
+        0 => {}
+        1..4 => (0..from.len()).for_each(|n| mem[to + n] = mem[from.start + n]),
+        4..8 => {
+            piece::<4>(mem, from.start, to);
+            piece::<4>(mem, from.end - 4, to + from.len() - 4);
+        }
+        8..=16 => {
+            piece::<8>(mem, from.start, to);
+            piece::<8>(mem, from.end - 8, to + from.len() - 8);
+        }
+        _ => mem.copy_within(from, to),
+    }
 }
 
 /// A length or position as the language counts: a negative one is 0, one beyond any string is as good as its end.
@@ -328,6 +363,9 @@ impl<U: Unit> fmt::Write for Writer<'_, U> {
 fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [raw, elem]: [u64; 2]) -> u64 {
     let mut out = Writer::<U>::new(mem, dst);
     let Some(elem) = Elem::from_code(elem as u8) else { return 0 };
+    if U::BYTES == 1 && elem.is_integer() {
+        return decimal(out.mem, dst, elem, raw) as u64;
+    }
     if elem.family() == Family::Char {
         if raw != 0 {
             out.unit(narrowed::<U>(raw as u16));
@@ -337,6 +375,33 @@ fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [raw, elem]: [u64; 2]) -> u6
         let _ = value::write_text(&mut out, elem, raw);
     }
     out.length as u64
+}
+
+/// An integer as [`value::write_text`] writes it.
+fn decimal(mem: &mut [u8], dst: Text, elem: Elem, raw: u64) -> usize {
+    let negative = elem.is_signed() && elem.repr().sign_extend(raw) < 0;
+    let mut rest = if elem.is_signed() { elem.repr().sign_extend(raw).unsigned_abs() } else { raw };
+    let mut digits = [b'-'; 20];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        if rest == 0 {
+            break;
+        }
+    }
+    at -= usize::from(negative);
+    digits[at] = if negative { b'-' } else { digits[at] };
+    let text = &digits[at..];
+    let start = (dst.at as usize).min(mem.len());
+    let room = (mem.len() - start).saturating_sub(1).min(dst.capacity as usize);
+    let count = text.len().min(room);
+    if let Some(target) = mem.get_mut(start..start + count + 1) {
+        target[..count].copy_from_slice(&text[..count]);
+        target[count] = 0;
+    }
+    count
 }
 
 /// A unit that a STRING cannot hold becomes a question mark.

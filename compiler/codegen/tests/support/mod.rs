@@ -53,7 +53,7 @@ pub fn program(funcs: Vec<Func>, tasks: usize) -> Program {
         sources: (0..100u32).map(source).collect(),
         region_bytes: REGION_BYTES,
         frame_base: FRAME_BASE,
-        addressable: (0, 0),
+        addressable: Vec::new(),
         initial: Vec::new(),
         retain: Vec::new(),
         parts: Vec::new(),

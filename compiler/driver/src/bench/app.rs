@@ -68,13 +68,18 @@ impl Front {
 
     /// Code for the checks (`all`, `none` or a list) and the optimisation of the command line.
     pub fn compile(&self, checks: &str, opt: OptArg) -> Result<Back, String> {
-        self.back(&CodeArgs { checks: Some(checks.into()), opt: Some(opt) }).map_err(|e| e.message)
+        self.back(&CodeArgs { checks: Some(checks.into()), opt: Some(opt) }, false).map_err(|e| e.message)
     }
 
-    pub(crate) fn back(&self, code: &CodeArgs) -> Result<Back, Failure> {
+    /// Code for every POU, whether a task reaches it or not.
+    pub fn compile_library(&self) -> Result<Back, String> {
+        self.back(&CodeArgs { checks: None, opt: Some(OptArg::Speed) }, true).map_err(|e| e.message)
+    }
+
+    pub(crate) fn back(&self, code: &CodeArgs, all: bool) -> Result<Back, Failure> {
         let app = self.checked.app.as_ref().ok_or_else(crate::nothing_to_run)?;
         let (compiled, cpu_ms) =
-            timed(|| pipeline::compile(&self.checked, app, &self.project, &self.parsed, code, false));
+            timed(|| pipeline::compile(&self.checked, app, &self.project, &self.parsed, code, all));
         Ok(Back { compiled: compiled?, cpu_ms })
     }
 
@@ -105,6 +110,12 @@ impl Back {
     /// What the runtime knows of it.
     pub fn image(&self) -> &Image {
         &self.compiled.image
+    }
+
+    /// Whether some call catches the faults in it (EN/ENO).
+    pub fn catches_faults(&self) -> bool {
+        let insts = self.program().funcs.iter().flat_map(|f| &f.blocks).flat_map(|b| &b.insts);
+        insts.into_iter().any(|inst| matches!(inst, plcc_mir::ir::Inst::Call { status: Some(_), .. }))
     }
 
     /// Bytes of its memory.

@@ -22,9 +22,9 @@ pub struct Plan {
 
 impl Plan {
     /// For a report.
-    pub const FULL: Plan = Plan { samples: 300, sample_ns: 30_000.0, cycles: 2000, repeats: 10 };
-    /// For a first look: about a tenth of the time.
-    pub const QUICK: Plan = Plan { samples: 60, sample_ns: 20_000.0, cycles: 1000, repeats: 3 };
+    pub const FULL: Plan = Plan { samples: 300, sample_ns: 30_000.0, cycles: 1000, repeats: 25 };
+    /// For a first look.
+    pub const QUICK: Plan = Plan { samples: 100, sample_ns: 20_000.0, cycles: 500, repeats: 6 };
     /// To see that everything runs.
     pub const SMOKE: Plan = Plan { samples: 2, sample_ns: 1_000.0, cycles: 40, repeats: 1 };
 }
@@ -60,8 +60,11 @@ const WARM_UP: usize = 3;
 
 /// Measures them.
 pub fn measure(lanes: &mut [Lane], plan: &Plan, scale: Scale) -> Result<Measured, Faulted> {
-    let batch = batch(lanes, plan, scale)?;
-    let batches = batches(lanes, plan, scale, batch)?;
+    let cycle_ns = probe(lanes, plan, scale)?;
+    let fastest = cycle_ns.iter().copied().fold(f64::INFINITY, f64::min);
+    let batch = ((plan.sample_ns / fastest.max(0.1)) as u64).clamp(1, plan.cycles);
+    let pieces: Vec<u64> = cycle_ns.iter().map(|ns| piece(batch, *ns / fastest)).collect();
+    let batches = batches(lanes, plan, scale, batch, &pieces)?;
     let singles = singles(lanes, plan, scale)?;
     let times = batches.into_iter().zip(singles).map(|(batches, runs)| {
         let floors = (0..plan.cycles as usize)
@@ -83,22 +86,37 @@ fn run(lane: &mut Lane, first: u64, count: u64) -> Result<(), Faulted> {
     }
 }
 
-/// Cycles a batch, so that the fastest lane takes as long as the plan wants.
-fn batch(lanes: &mut [Lane], plan: &Plan, scale: Scale) -> Result<u64, Faulted> {
-    let probe = plan.cycles.min(64);
-    let mut fastest = f64::INFINITY;
+/// About what a cycle of each lane takes.
+fn probe(lanes: &mut [Lane], plan: &Plan, scale: Scale) -> Result<Vec<f64>, Faulted> {
+    let cycles = plan.cycles.min(64);
+    let mut times = Vec::with_capacity(lanes.len());
     for lane in lanes {
+        let mut fastest = f64::INFINITY;
         for _ in 0..3 {
             lane.subject.restart();
             let start = ticks::now();
-            run(lane, 0, probe)?;
-            fastest = fastest.min(scale.between(start, ticks::now()) / probe as f64);
+            run(lane, 0, cycles)?;
+            fastest = fastest.min(scale.between(start, ticks::now()) / cycles as f64);
         }
+        times.push(fastest);
     }
-    Ok(((plan.sample_ns / fastest.max(0.1)) as u64).clamp(1, plan.cycles))
+    Ok(times)
 }
 
-fn batches(lanes: &mut [Lane], plan: &Plan, scale: Scale, batch: u64) -> Result<Vec<Vec<f64>>, Faulted> {
+/// Cycles that are timed together in a lane that is so many times slower than the fastest. A batch of the interpreter would
+/// take so long that the machine interrupts every one of them; native lanes are timed alike.
+fn piece(batch: u64, slower: f64) -> u64 {
+    if slower < 8.0 { batch } else { ((batch as f64 / slower) as u64).max(1) }
+}
+
+/// By lane, the mean cycle of each piece.
+fn batches(
+    lanes: &mut [Lane],
+    plan: &Plan,
+    scale: Scale,
+    batch: u64,
+    pieces: &[u64],
+) -> Result<Vec<Vec<f64>>, Faulted> {
     let mut times: Vec<Vec<f64>> = lanes.iter().map(|_| Vec::with_capacity(plan.samples)).collect();
     lanes.iter_mut().for_each(|lane| lane.subject.restart());
     let mut first = 0;
@@ -107,12 +125,17 @@ fn batches(lanes: &mut [Lane], plan: &Plan, scale: Scale, batch: u64) -> Result<
             lanes.iter_mut().for_each(|lane| lane.subject.restart());
             first = 0;
         }
-        for (lane, times) in lanes.iter_mut().zip(&mut times) {
-            let start = ticks::now();
-            run(lane, first, batch)?;
-            let ns = scale.between(start, ticks::now());
-            if round >= WARM_UP {
-                times.push(ns / batch as f64);
+        for ((lane, piece), times) in lanes.iter_mut().zip(pieces).zip(&mut times) {
+            let mut at = first;
+            while at < first + batch {
+                let count = (*piece).min(first + batch - at);
+                let start = ticks::now();
+                run(lane, at, count)?;
+                let ns = scale.between(start, ticks::now());
+                if round >= WARM_UP {
+                    times.push(ns / count as f64);
+                }
+                at += count;
             }
         }
         first += batch;

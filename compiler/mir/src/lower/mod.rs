@@ -106,7 +106,7 @@ pub fn lower(
     program.initial = image.segments();
     program.region_bytes = layout.region_bytes;
     program.frame_base = layout.frame.start;
-    program.addressable = (layout.addressable.start, layout.addressable.bytes);
+    program.addressable = vec![(layout.addressable.start, layout.addressable.bytes)];
     program.retain = layout.retain.clone();
     Ok((program, layout))
 }

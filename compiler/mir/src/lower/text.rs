@@ -206,11 +206,31 @@ impl FuncLower<'_, '_> {
         if operands.texts.iter().all(|text| disjoint(to, text)) {
             return self.build(*op, &operands, to);
         }
+        if *op == TextOp::Concat && self.append(&operands, to) {
+            return;
+        }
         // Every result is cut at its end, so what does not fit there need not be made.
         let capacity = self.bound(expr).min(to.known().unwrap_or(LONGEST));
         let temp = self.text_temp(*wide, capacity);
         self.build(*op, &operands, &temp);
         self.copy_text(to, &temp);
+    }
+
+    /// `s := CONCAT(s, ...)`: the others go behind what is there. FALSE if that is not what it is.
+    fn append(&mut self, operands: &Operands, to: &Text) -> bool {
+        let Some((first, rest)) = operands.texts.split_first() else { return false };
+        let same = first.place == to.place && first.known() == to.known();
+        // LEN tells no greater length.
+        let short = to.known().is_some_and(|capacity| capacity <= i16::MAX as u32);
+        if !same || !short || !rest.iter().all(|text| disjoint(to, text)) {
+            return false;
+        }
+        let fns = TextFns::of(to.wide);
+        let mut end = self.call_text(&fns.len, &[to], &[]);
+        for text in rest {
+            end = self.call_text(&fns.put, &[to, text], &[end]);
+        }
+        true
     }
 
     /// Copies a string and cuts it at the capacity. The two may be the same or overlap.

@@ -51,6 +51,14 @@ struct Effects {
     writes: Bytes,
 }
 
+/// The pass that comes first: keeps in the program what references reach. Later passes turn the address of a fixed place
+/// into a number, and then no instruction says any more that it is taken.
+pub fn keep(program: &mut Program) {
+    let escaped = Facts::new(program).escaped.0;
+    let range = |(start, end): (i64, i64)| (start.max(0) as u32, (end - start.max(0)).max(0) as u32);
+    program.addressable = escaped.into_iter().map(range).collect();
+}
+
 /// What is known of a whole program.
 #[derive(Debug, Default)]
 pub struct Facts {
@@ -83,8 +91,9 @@ impl Facts {
         for id in order.iter().rev() {
             facts.instances_of_callees(program, *id);
         }
-        let (start, length) = program.addressable;
-        facts.escaped.add(i64::from(start), i64::from(start) + i64::from(length));
+        for (start, length) in &program.addressable {
+            facts.escaped.add(i64::from(*start), i64::from(*start) + i64::from(*length));
+        }
         for (id, func) in program.funcs.iter_enumerated() {
             for inst in func.blocks.iter().flat_map(|b| &b.insts) {
                 if let Inst::AddressOf { place, bytes, .. } = inst {

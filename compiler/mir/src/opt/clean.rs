@@ -257,8 +257,7 @@ fn join_blocks(func: &mut Func) -> bool {
     let mut replace = Replace::new(func);
     let mut changed = false;
     for id in func.blocks.indices() {
-        loop {
-            let Term::Jump(target) = &func.blocks[id].term else { break };
+        while let Term::Jump(target) = &func.blocks[id].term {
             let next = target.block;
             if next == id || next.index() == 0 || ways[next] != 1 {
                 break;

@@ -57,9 +57,18 @@ pub fn run(func: &mut Func, alias: &Alias) {
                         written.push(Written { place: place.clone(), bytes, exits: Vec::new() });
                     }
                 }
-                Inst::Zero { dst, bytes } => {
+                Inst::Zero { dst, bytes } | Inst::Copy { dst, bytes, .. } => {
+                    let bytes = i64::from(*bytes);
+                    // An exit would have to owe all of it.
+                    let found = written.iter().any(|w| w.exits.is_empty() && covers(w, dst, bytes));
+                    if found {
+                        dead[n] = true;
+                        continue;
+                    }
                     change(&mut written, |w| alias.may_write(func, &constants, inst, &w.place, w.bytes));
-                    written.push(Written { place: dst.clone(), bytes: i64::from(*bytes), exits: Vec::new() });
+                    written.push(Written { place: dst.clone(), bytes, exits: Vec::new() });
+                    // A copy reads before it writes.
+                    written.retain(|w| !alias.may_read(func, &constants, inst, &w.place, w.bytes));
                 }
                 Inst::Check { exit, .. } | Inst::Poll { exit } => {
                     pass_exit(func, alias, exit, n, &mut written);
@@ -70,7 +79,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
                         w.place.base == Base::Frame && !alias.may_read(func, &constants, inst, &w.place, w.bytes)
                     });
                 }
-                Inst::Load { .. } | Inst::Copy { .. } | Inst::CallText { .. } => {
+                Inst::Load { .. } | Inst::CallText { .. } => {
                     change(&mut written, |w| alias.may_write(func, &constants, inst, &w.place, w.bytes));
                     written.retain(|w| !alias.may_read(func, &constants, inst, &w.place, w.bytes));
                 }

@@ -15,6 +15,7 @@ use crate::dominators::Dominators;
 use crate::ir::{BlockId, Func, Inst, Place, ValueId};
 use index_vec::IndexVec;
 use plcc_stdlib::prim::Repr;
+use plcc_stdlib::rt::strings::{TextFn, TextFns};
 
 /// So many places are remembered at once.
 const KNOWN: usize = 40;
@@ -29,14 +30,26 @@ struct Known {
     truth: bool,
 }
 
+/// A string whose length is known.
+#[derive(Debug, Clone, PartialEq)]
+struct Length {
+    place: Place,
+    capacity: u64,
+    /// Bytes of it in memory, at most.
+    bytes: i64,
+    value: ValueId,
+}
+
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
     let tree = Dominators::new(func);
     let constants = Constants::new(func);
     let mut replace = Replace::new(func);
+    let mut lengths: Vec<Length> = Vec::new();
     let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
         let mut known = start(&tree.preds[block], &ends);
+        lengths.clear();
         let insts = std::mem::take(&mut func.blocks[block].insts);
         let mut out = Vec::with_capacity(insts.len());
         for mut inst in insts {
@@ -51,7 +64,19 @@ pub fn run(func: &mut Func, alias: &Alias) {
                     continue;
                 }
             }
+            if let Some(length) = known_length(&inst, &constants, &lengths) {
+                if let (Some(dst), _) = inst.results() {
+                    replace.set(dst, length);
+                    continue;
+                }
+            }
             forget(func, alias, &constants, &inst, &mut known);
+            if writes(&inst) {
+                lengths.retain(|l| !alias.may_write(func, &constants, &inst, &l.place, l.bytes));
+            }
+            if let Some(length) = length_of(&inst, &constants) {
+                lengths.push(length);
+            }
             match &inst {
                 Inst::Load { dst, place, normalise } => {
                     let truth = *normalise || place.bit.is_some();
@@ -90,10 +115,39 @@ fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec
 
 /// Forgets what an instruction may change.
 fn forget(func: &Func, alias: &Alias, constants: &Constants, inst: &Inst, known: &mut Vec<Known>) {
-    if matches!(
-        inst,
-        Inst::Store { .. } | Inst::Copy { .. } | Inst::Zero { .. } | Inst::Call { .. } | Inst::CallText { .. }
-    ) {
+    if writes(inst) {
         known.retain(|k| !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes())));
     }
+}
+
+fn writes(inst: &Inst) -> bool {
+    matches!(
+        inst,
+        Inst::Store { .. } | Inst::Copy { .. } | Inst::Zero { .. } | Inst::Call { .. } | Inst::CallText { .. }
+    )
+}
+
+/// The length of the string that an instruction builds or measures. LEN tells no more than an INT can hold, so only
+/// strings that cannot be longer are known.
+fn length_of(inst: &Inst, constants: &Constants) -> Option<Length> {
+    let Inst::CallText { dst, func, texts, .. } = inst else { return None };
+    let capacity = constants.get(texts[0].capacity).filter(|capacity| *capacity <= i16::MAX as u64)?;
+    (func.builds || is_len(func)).then(|| Length {
+        place: texts[0].place.clone(),
+        capacity,
+        bytes: 2 * (capacity as i64 + 1),
+        value: *dst,
+    })
+}
+
+/// What LEN of a string gives whose length is known.
+fn known_length(inst: &Inst, constants: &Constants, lengths: &[Length]) -> Option<ValueId> {
+    let Inst::CallText { func, texts, .. } = inst else { return None };
+    let capacity = constants.get(texts[0].capacity).filter(|_| is_len(func))?;
+    let known = lengths.iter().rev().find(|l| l.place == texts[0].place && l.capacity == capacity);
+    known.map(|l| l.value)
+}
+
+fn is_len(func: &'static TextFn) -> bool {
+    [false, true].iter().any(|wide| std::ptr::eq(func, &raw const TextFns::of(*wide).len))
 }

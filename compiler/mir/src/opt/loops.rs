@@ -95,14 +95,33 @@ fn bodies(func: &Func, tree: &Dominators) -> Vec<(BlockId, FxHashSet<BlockId>)> 
 }
 
 fn add_preheader(func: &mut Func, header: BlockId, body: &FxHashSet<BlockId>) {
-    let params: Vec<_> = func.blocks[header].params.iter().map(|v| func.values[*v]).collect();
-    let params: Vec<_> = params.into_iter().map(|repr| func.values.push(repr)).collect();
-    let term = Term::Jump(Target { block: header, args: params.clone() });
-    let front = func.blocks.push(Block { params, insts: Vec::new(), term });
-    for id in (0..front.index()).map(BlockId::from_usize).filter(|id| !body.contains(id)) {
+    let outside: Vec<BlockId> = func.blocks.indices().filter(|id| !body.contains(id)).collect();
+    let mut edges: Vec<Target> = Vec::new();
+    for id in &outside {
+        func.blocks[*id].term.for_each_target(|target| {
+            if target.block == header {
+                edges.push(target.clone());
+            }
+        });
+    }
+    // One way in gives its values at once, so that they stay what they are.
+    let (params, onward) = match &edges[..] {
+        [only] => (Vec::new(), only.clone()),
+        _ => {
+            let reprs: Vec<_> = func.blocks[header].params.iter().map(|v| func.values[*v]).collect();
+            let params: Vec<_> = reprs.into_iter().map(|repr| func.values.push(repr)).collect();
+            (params.clone(), Target { block: header, args: params })
+        }
+    };
+    let without_args = params.is_empty();
+    let front = func.blocks.push(Block { params, insts: Vec::new(), term: Term::Jump(onward) });
+    for id in outside {
         visit::targets(&mut func.blocks[id].term, &mut |target| {
             if target.block == header {
                 target.block = front;
+                if without_args {
+                    target.args.clear();
+                }
             }
         });
     }

@@ -16,12 +16,14 @@ mod fold;
 mod forward;
 mod frames;
 mod hoist;
+mod induction;
 mod inline;
 mod loops;
 mod promote;
 mod proven;
 mod ranges;
 mod rewrite;
+mod rotate;
 mod scale;
 mod select;
 mod ssa;
@@ -54,8 +56,10 @@ pub fn passes() -> &'static [Pass] {
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
     const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
     const RANGES: Pass = Pass { name: "ranges", run: |p| each(p, ranges::run) };
+    const INDUCTION: Pass = Pass { name: "induction", run: |p| each(p, induction::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
+        Pass { name: "references", run: alias::keep },
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
@@ -63,11 +67,13 @@ pub fn passes() -> &'static [Pass] {
         SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, TIDY,
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
-        SELECT, TIDY,
+        SELECT, TIDY, INDUCTION, TIDY,
         Pass { name: "unroll", run: |p| each(p, unroll::run) }, TIDY, FORWARD, DEAD_STORES, TIDY,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, TIDY,
         Pass { name: "divide", run: |p| each(p, divide::run) },
-        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, HOIST, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, INDUCTION, TIDY, HOIST, TIDY,
+        Pass { name: "rotate", run: |p| each(p, rotate::run) },
+        Pass { name: "clean", run: |p| each(p, clean::run) },
     ];
     PASSES
 }

@@ -80,6 +80,9 @@ impl Facts {
                 low += i128::from(term.low) * i128::from(term.stride);
                 high += i128::from(term.high) * i128::from(term.stride);
             }
+            // Never one value: as a constant it would hide that the address is taken, and later passes (`alias::Facts`) would
+            // not know that references reach this place.
+            high = high.max(low + 1);
         }
         match (u64::try_from(low), u64::try_from(high)) {
             (Ok(low), Ok(high)) => Interval::between_unsigned(Repr::I32, low, high).unwrap_or(full),
