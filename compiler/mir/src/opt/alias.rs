@@ -8,6 +8,7 @@ use super::rewrite::Constants;
 use crate::ir::{Base, Func, FuncId, Inst, Place, Program};
 use crate::verify::bottom_up;
 use index_vec::IndexVec;
+use std::borrow::Cow;
 
 /// More ranges than this are merged: then a set says more than is true, which is safe.
 const MAX_RANGES: usize = 48;
@@ -197,6 +198,19 @@ pub fn span(place: &Place, bytes: i64) -> (i64, i64) {
     (low, high)
 }
 
+/// Two places of one base without the variable parts that both have.
+fn without_common_terms<'a>(a: &'a Place, b: &'a Place) -> (Cow<'a, Place>, Cow<'a, Place>) {
+    if a.index.is_empty() || b.index.is_empty() {
+        return (Cow::Borrowed(a), Cow::Borrowed(b));
+    }
+    let (mut a, mut b) = (a.clone(), b.clone());
+    a.index.retain(|term| {
+        let same = b.index.iter().position(|other| (other.value, other.stride) == (term.value, term.stride));
+        same.map(|n| b.index.remove(n)).is_none()
+    });
+    (Cow::Owned(a), Cow::Owned(b))
+}
+
 /// Calls `f` with every place that an instruction accesses, how many bytes, and whether it writes them. Calls say only
 /// what their arguments say: nothing.
 pub fn for_each_access(func: &Func, constants: &Constants, inst: &Inst, f: &mut impl FnMut(&Place, i64, bool)) {
@@ -249,13 +263,10 @@ impl<'a> Alias<'a> {
     /// Whether two accesses may touch the same memory.
     pub fn overlap(&self, a: &Place, a_bytes: i64, b: &Place, b_bytes: i64) -> bool {
         if a.base == b.base {
-            // The same elements, or others of the same ones.
-            let meets = if a.index == b.index {
-                a.offset < b.offset + b_bytes && b.offset < a.offset + a_bytes
-            } else {
-                let ((a_start, a_end), (b_start, b_end)) = (span(a, a_bytes), span(b, b_bytes));
-                a_start < b_end && b_start < a_end
-            };
+            // What both have in common moves them by the same.
+            let (a_rest, b_rest) = without_common_terms(a, b);
+            let ((a_start, a_end), (b_start, b_end)) = (span(&a_rest, a_bytes), span(&b_rest, b_bytes));
+            let meets = a_start < b_end && b_start < a_end;
             let other_bits =
                 a.index == b.index && a.offset == b.offset && a.bit.zip(b.bit).is_some_and(|(a, b)| a != b);
             return meets && !other_bits;

@@ -1,7 +1,8 @@
 //! Puts the bodies of function blocks and functions where they are called, from the callees upwards.
 //!
 //! A callee's instance becomes the place it is called on, so that the variables of instances at fixed places are fixed
-//! places too, which is what all later passes live on. Its frame lies where it lay before: at the end of the caller's own.
+//! places too, which is what all later passes live on. Its frame becomes a part of the caller's, one for each callee, so that
+//! what lies there has one type each.
 //! A call that catches faults stays a call. What no task reaches any more is left out of the program.
 //!
 //! ```text
@@ -14,6 +15,7 @@ use crate::ir::{Base, Block, BlockId, Exit, Func, FuncId, Inst, Place, Program, 
 use crate::verify::bottom_up;
 use crate::visit;
 use index_vec::IndexVec;
+use rustc_hash::FxHashMap;
 
 /// Callees up to this size are always put in, in instructions.
 const SMALL: usize = 40;
@@ -101,6 +103,8 @@ struct Caller<'a> {
     /// Its own frame, before anything was put in.
     own_frame: u32,
     frame_bytes: u32,
+    /// Where the frames of callees lie whose bodies are put in.
+    frames: FxHashMap<FuncId, u32>,
     size: usize,
     /// Names of memory that bodies brought along.
     names: Vec<(Base, u32, String)>,
@@ -109,7 +113,16 @@ struct Caller<'a> {
 impl<'a> Caller<'a> {
     fn new(func: &'a mut Func, program: &'a Program, sites: &'a IndexVec<FuncId, usize>) -> Self {
         let (own_frame, size) = (func.frame_bytes, size(func));
-        Self { func, program, sites, own_frame, frame_bytes: own_frame, size, names: Vec::new() }
+        Self {
+            func,
+            program,
+            sites,
+            own_frame,
+            frame_bytes: own_frame,
+            frames: FxHashMap::default(),
+            size,
+            names: Vec::new(),
+        }
     }
 
     /// Whether anything was put in.
@@ -157,6 +170,10 @@ impl<'a> Caller<'a> {
                 };
                 let frame = target.frame_bytes == 0 || (tied && target.frame_bytes <= FRAME_BYTES);
                 if fits && frame && self.size + callee_size <= HUGE {
+                    if !self.frames.contains_key(callee) {
+                        self.frames.insert(*callee, self.frame_bytes);
+                        self.frame_bytes += target.frame_bytes;
+                    }
                     calls.push(n);
                     self.size += callee_size;
                 }
@@ -189,13 +206,19 @@ impl<'a> Caller<'a> {
         let own_frame = i64::from(self.own_frame);
         for (block, chosen) in self.func.blocks.iter_mut().zip(chosen) {
             let calls: Vec<usize> = positions_of_calls(block);
+            let callees: FxHashMap<usize, FuncId> = calls
+                .iter()
+                .filter_map(|n| match &block.insts[*n] {
+                    Inst::Call { callee, .. } => Some((*n, *callee)),
+                    _ => None,
+                })
+                .collect();
             for (n, inst) in block.insts.iter_mut().enumerate() {
                 for_each_access(inst, &mut |place, write| {
                     if place.base == Base::Frame && place.offset >= own_frame {
-                        let inlined = call_of(&calls, n, write).is_some_and(|call| chosen.contains(&call));
-                        if !inlined {
-                            place.offset += CALLEE_FRAME - own_frame;
-                        }
+                        let call = call_of(&calls, n, write).filter(|call| chosen.contains(call));
+                        let frame = call.and_then(|call| self.frames.get(&callees[&call]));
+                        place.offset += frame.map_or(CALLEE_FRAME, |start| i64::from(*start)) - own_frame;
                     }
                 });
             }
@@ -208,20 +231,20 @@ impl<'a> Caller<'a> {
         let Some(Inst::Call { dst, callee, instance, args, exit, .. }) = self.func.blocks[block].insts.pop() else {
             plcc_diag::bug!("no call at b{}:{n}", block.index());
         };
+        let frame_start = self.frames.get(&callee).copied().unwrap_or(self.own_frame);
         let callee = &self.program.funcs[callee];
         let first_value = self.func.values.len();
         let first_block = self.func.blocks.len();
         self.func.values.extend(callee.values.iter().copied());
         let end = BlockId::from_usize(first_block + callee.blocks.len());
-        let (own_frame, instance) = (self.own_frame, instance.as_ref());
-        let map = Map { first_value, first_block, end, own_frame, callee, instance, exit: &exit };
+        let instance = instance.as_ref();
+        let map = Map { first_value, first_block, end, frame_start, callee, instance, exit: &exit };
         for body in &callee.blocks {
             self.func.blocks.push(map.block(body));
         }
         let term = Term::Jump(crate::ir::Target { block: BlockId::from_usize(first_block), args });
         let term = std::mem::replace(&mut self.func.blocks[block].term, term);
         self.func.blocks.push(Block { params: dst.into_iter().collect(), insts: behind, term });
-        self.frame_bytes = self.frame_bytes.max(self.own_frame + callee.frame_bytes);
         self.name_places(callee, instance);
     }
 
@@ -280,7 +303,8 @@ struct Map<'a> {
     first_block: usize,
     /// Where returns go.
     end: BlockId,
-    own_frame: u32,
+    /// Where its frame lies now.
+    frame_start: u32,
     callee: &'a Func,
     instance: Option<&'a Place>,
     /// Of the call.
@@ -328,7 +352,7 @@ impl Map<'_> {
             }
             (Base::Frame, _) => {
                 let frame = i64::from(self.callee.frame_bytes);
-                place.offset += if place.offset >= frame { CALLEE_FRAME - frame } else { i64::from(self.own_frame) };
+                place.offset += if place.offset >= frame { CALLEE_FRAME - frame } else { i64::from(self.frame_start) };
             }
             _ => {}
         }

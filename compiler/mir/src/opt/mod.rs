@@ -67,6 +67,7 @@ pub fn passes() -> &'static [Pass] {
         SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, TIDY,
         PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        // Counters first: of a loop that was repeated they are not seen any more.
         SELECT, TIDY, INDUCTION, TIDY,
         Pass { name: "unroll", run: |p| each(p, unroll::run) }, TIDY, FORWARD, DEAD_STORES, TIDY,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, TIDY,
