@@ -399,3 +399,57 @@ fn traces_are_drawn() {
     wrong(&["good.st"], 2, "no trace");
     wrong(&["none.csv"], 3, "none.csv");
 }
+
+/// PLCopen XML among the sources: mixed with text, in folders beside other XML, in project.toml; drawn, and as text.
+#[test]
+fn plcopen_xml() {
+    let var = |name: &str, ty: &str| format!("<variable name=\"{name}\"><type>{ty}</type></variable>");
+    let plant = format!(
+        "<?xml version=\"1.0\"?>\n<project xmlns=\"http://www.plcopen.org/xml/tc6_0201\"><types><pous>\n\
+         <pou name=\"Main\" pouType=\"program\"><interface><localVars>{}{}</localVars></interface>\n<body><FBD>\n\
+         <block localId=\"1\" typeName=\"Twice\" instanceName=\"t\"><position x=\"60\" y=\"20\"/><inputVariables><variable formalParameter=\"v\">\
+         <connectionPointIn><connection refLocalId=\"2\"/></connectionPointIn></variable></inputVariables>\
+         <outputVariables><variable formalParameter=\"r\"><connectionPointOut/></variable></outputVariables></block>\n\
+         <inVariable localId=\"2\"><position x=\"0\" y=\"20\"/><connectionPointOut/><expression>n + 1</expression></inVariable>\n\
+         <outVariable localId=\"3\"><position x=\"160\" y=\"20\"/><connectionPointIn><connection refLocalId=\"1\"/></connectionPointIn><expression>n</expression></outVariable>\n\
+         </FBD></body></pou></pous></types></project>\n",
+        var("n", "<INT/>"),
+        var("t", "<derived name=\"Twice\"/>")
+    );
+    let twice = "FUNCTION_BLOCK Twice\nVAR_INPUT v : INT; END_VAR\nVAR_OUTPUT r : INT; END_VAR\nr := 2 * v;\nEND_FUNCTION_BLOCK\n";
+    let f = folder_with(&[
+        ("p/plc.xml", &plant),
+        ("p/beremiz.xml", "<BeremizRoot xmlns=\"urn:x\"/>"),
+        ("p/twice.st", twice),
+        ("project.toml", "[project]\nname = \"p\"\nsources = [\"p/*.st\", \"p/plc.xml\"]\n"),
+    ]);
+    let trace = "cycle,Main.n\n1,2\n2,6\n3,14\n";
+    let flags = ["--virtual-time", "--cycles", "3", "--watch", "Main.n"];
+    let run = |files: &[&str]| plcc(f.path(), &[&["run"], files, &flags[..]].concat()).stdout;
+    assert_eq!(run(&["p/plc.xml", "p/twice.st"]), trace);
+    // Other XML files of a folder are none of its sources; named, one is refused.
+    assert_eq!(run(&["p"]), trace);
+    assert_eq!(run(&["project.toml"]), trace);
+    let done = plcc(f.path(), &["check", "p/beremiz.xml"]);
+    assert!(done.code == 1 && done.stderr.contains("E0131"), "{}", done.stderr);
+
+    // Line and column of the XML, POU and element.
+    let done = plcc(f.path(), &["check", "p/plc.xml", "--message-format", "short"]);
+    let before = plant.lines().nth(2).and_then(|l| l.find("derived name=\"")).expect("the type");
+    let column = before + "derived name=\"".len() + 1;
+    let message = format!("p/plc.xml:3:{column}: error[E0203]: there is no type `Twice` (Main)");
+    assert!(done.code == 1 && done.stderr.starts_with(&message), "{}", done.stderr);
+
+    let drawn = plcc(f.path(), &["graph", "p"]);
+    assert!(drawn.code == 0 && drawn.stdout.contains(">Twice</text>"), "{}", drawn.stderr);
+    assert_eq!(plcc(f.path(), &["graph", "p", "--pou", "Main"]).stdout, drawn.stdout);
+    assert_eq!(plcc(f.path(), &["graph", "p", "--sfc"]).code, 2);
+
+    let done = plcc(f.path(), &["convert", "p", "--to", "st", "-o", "main.st"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let text = std::fs::read_to_string(f.path().join("main.st")).expect("the text");
+    assert!(text.contains("t(v := n + 1);\nn := t.r;\n") && !text.contains("FUNCTION_BLOCK Twice"), "{text}");
+    assert_eq!(run(&["main.st", "p/twice.st"]), trace);
+    assert_eq!(plcc(f.path(), &["convert", "p/twice.st", "--to", "st"]).code, 2);
+    assert_eq!(plcc(f.path(), &["convert", "p", "--to", "c"]).code, 2);
+}

@@ -156,6 +156,9 @@ fn references_that_lead_nowhere_or_in_circles() {
     )));
     let loops: String = (0..2000).flat_map(|n| [block(2 * n + 1, 2 * n + 2), block(2 * n + 2, 2 * n + 1)]).collect();
     accepted(&project(&format!("<FBD>{loops}</FBD>")));
+    // A connector that nothing leads to.
+    let open = "<connector localId=\"1\" name=\"c\"><connectionPointIn/></connector><continuation localId=\"2\" name=\"c\"><connectionPointOut/></continuation>";
+    refused(project(&format!("<FBD>{open}{}</FBD>", out(3, 2))).as_bytes(), "E0413");
     // Connectors in a circle.
     let link = |id: usize, name: usize| {
         format!(

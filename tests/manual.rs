@@ -9,6 +9,7 @@
 //! st run=6              runs 6 cycles of 10 ms (or `interval=1s`) on interpreter and JIT; the next block has the values
 //! st fault=E0602        runs, and stops within 10 cycles with this fault, on interpreter and JIT
 //! st codesys            in that profile; goes with the others
+//! xml                   a PLCopen project; goes with the others
 //! trace                 values behind a `run`: one line per variable of Main, one column per cycle
 //! text, sh, toml, csv   not checked here: pictures, commands, files
 //! ```
@@ -111,9 +112,18 @@ fn source(text: &str) -> String {
     if words.contains(&first) { text.to_string() } else { format!("PROGRAM Main\n{text}END_PROGRAM\n") }
 }
 
+/// The name and the text of the file that a block stands for.
+fn file(block: &Block) -> (&'static str, String) {
+    match block.info.first().is_some_and(|kind| kind == "xml") {
+        true => ("main.xml", block.text.clone()),
+        false => ("main.st", source(&block.text)),
+    }
+}
+
 /// Compiles a block and compares the messages.
 fn check(block: &Block, task: &Task) -> Result<(), String> {
-    let (_, diags, sources) = diagnose(&source(&block.text), task.profile());
+    let (_, text) = file(block);
+    let (_, diags, sources) = diagnose(&text, task.profile());
     let list = diags.sorted();
     let shown: String =
         list.iter().map(|d| format!("    {}: {}: {}\n", sources.position(d.primary.span), d.code, d.message)).collect();
@@ -178,7 +188,8 @@ fn run(block: &Block, task: &Task, cycles: usize, trace: &str) -> Result<(), Str
         return Err(format!("{} has {} values for {cycles} cycles", row.name, row.values.len()));
     }
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
-    std::fs::write(folder.path().join("main.st"), source(&block.text)).map_err(|e| e.to_string())?;
+    let (name, text) = file(block);
+    std::fs::write(folder.path().join(name), text).map_err(|e| e.to_string())?;
     let inputs: Vec<&Row> = rows.iter().filter(|r| r.input).collect();
     let mut stimulus = format!("cycle{}\n", inputs.iter().map(|r| format!(",Main.{}", r.name)).collect::<String>());
     for n in 0..cycles {
@@ -194,7 +205,7 @@ fn run(block: &Block, task: &Task, cycles: usize, trace: &str) -> Result<(), Str
     let watch: Vec<String> = rows.iter().map(|r| format!("Main.{}", r.name)).collect();
     for engine in ["interp", "jit"] {
         let (watch, cycles) = (watch.join(","), cycles.to_string());
-        let mut args = vec!["run", "main.st", "--engine", engine, "--virtual-time", "--interval", &task.interval];
+        let mut args = vec!["run", name, "--engine", engine, "--virtual-time", "--interval", &task.interval];
         args.extend(["--cycles", &cycles, "--watch", &watch, "--trace", "-"]);
         if !inputs.is_empty() {
             args.extend(["--stimulus", "in.csv"]);
@@ -221,9 +232,10 @@ fn run(block: &Block, task: &Task, cycles: usize, trace: &str) -> Result<(), Str
 /// Runs a block that stops with a fault.
 fn stops(block: &Block, task: &Task, code: &str) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
-    std::fs::write(folder.path().join("main.st"), source(&block.text)).map_err(|e| e.to_string())?;
+    let (name, text) = file(block);
+    std::fs::write(folder.path().join(name), text).map_err(|e| e.to_string())?;
     for engine in ["interp", "jit"] {
-        let mut args = vec!["run", "main.st", "--engine", engine, "--virtual-time", "--cycles", "10"];
+        let mut args = vec!["run", name, "--engine", engine, "--virtual-time", "--cycles", "10"];
         if task.codesys {
             args.extend(["--profile", "codesys"]);
         }
@@ -244,7 +256,7 @@ fn judge(page: &str, text: &str) -> Vec<String> {
         let block = &all[n];
         n += 1;
         let result = match block.info.split_first().map(|(kind, rest)| (kind.as_str(), rest)) {
-            Some(("st", rest)) => Task::of(rest).and_then(|task| {
+            Some(("st" | "xml", rest)) => Task::of(rest).and_then(|task| {
                 check(block, &task)?;
                 if let Some(code) = &task.fault {
                     return stops(block, &task, code);

@@ -1,5 +1,6 @@
 //! Damaged programs: the sources of all cases and examples with words removed, doubled, moved and exchanged between them.
-//! None may make the parser, the checker or the lowering panic or hang; what still compiles must pass the verifier.
+//! None may make the parser, the checker or the lowering panic or hang; what still compiles must pass the verifier. PLCopen XML is
+//! damaged by elements and attributes, so that most of it stays well-formed.
 //!
 //! `MUTATIONS=1000000 cargo test --release -p plcc-tests --test mutations` is the long run; `MUTATION_SEED` is the first seed. A
 //! failure names its seed: `MUTATIONS=1 MUTATION_SEED=n` repeats it and prints the source.
@@ -21,14 +22,14 @@ fn number(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
 }
 
-fn sources(folder: &Path, out: &mut Vec<String>) {
+fn sources(folder: &Path, extension: &str, out: &mut Vec<String>) {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
     let mut paths: Vec<_> = entries.map(|e| e.expect("an entry").path()).collect();
     paths.sort();
     for path in paths {
         if path.is_dir() {
-            sources(&path, out);
-        } else if path.extension().is_some_and(|e| e == "st") {
+            sources(&path, extension, out);
+        } else if path.extension().is_some_and(|e| e == extension) {
             out.push(std::fs::read_to_string(&path).unwrap_or_default());
         }
     }
@@ -124,9 +125,92 @@ fn problem(text: &str, profile: Profile) -> Option<String> {
 fn no_damage_breaks_the_compiler() {
     let mut corpus = Vec::new();
     let tests = plcc_tests::root();
-    sources(&tests.join("cases"), &mut corpus);
-    sources(&plcc_tests::project_root().join("examples"), &mut corpus);
+    sources(&tests.join("cases"), "st", &mut corpus);
+    sources(&plcc_tests::project_root().join("examples"), "st", &mut corpus);
     assert!(corpus.len() > 100);
+    run(&corpus, damage);
+}
+
+#[test]
+fn no_damaged_drawing_breaks_the_compiler() {
+    let mut corpus = Vec::new();
+    sources(&plcc_tests::root().join("cases"), "xml", &mut corpus);
+    sources(&plcc_tests::project_root().join("examples"), "xml", &mut corpus);
+    assert!(corpus.len() > 30);
+    run(&corpus, damage_xml);
+}
+
+/// Elements of a drawing that stand on one line, and the values of attributes: where they begin and end.
+fn pieces(text: &str, elements: bool) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    if elements {
+        let mut at = 0;
+        for line in text.split_inclusive('\n') {
+            let inner = line.trim();
+            // Self-contained lines only: what they begin they close.
+            if inner.starts_with('<')
+                && inner.matches("</").count() + inner.matches("/>").count()
+                    == inner.matches('<').count() - inner.matches("</").count()
+            {
+                found.push((at, at + line.len()));
+            }
+            at += line.len();
+        }
+        let mut from = 0;
+        while let Some(start) = text[from..].find("<connection ").map(|n| from + n) {
+            let end = text[start..].find("/>").map_or(text.len(), |n| start + n + 2);
+            found.push((start, end));
+            from = end;
+        }
+    } else {
+        let mut from = 0;
+        while let Some(start) = text[from..].find("=\"").map(|n| from + n + 2) {
+            let end = text[start..].find('"').map_or(text.len(), |n| start + n);
+            found.push((start, end));
+            from = end;
+        }
+        let mut from = 0;
+        while let Some(start) = text[from..].find("<expression>").map(|n| from + n + 12) {
+            let end = text[start..].find('<').map_or(text.len(), |n| start + n);
+            found.push((start, end));
+            from = end;
+        }
+    }
+    found
+}
+
+/// One to four changes of a PLCopen XML file: elements removed, doubled, moved, values exchanged.
+fn damage_xml(rng: &mut Rng, text: &str, other: &str) -> String {
+    let mut text = text.to_string();
+    for _ in 0..rng.usize(1..=4) {
+        let elements = rng.bool();
+        let (own, others) = (pieces(&text, elements), pieces(other, elements));
+        if own.is_empty() || others.is_empty() {
+            break;
+        }
+        let (start, end) = own[rng.usize(..own.len())];
+        let (from, to) = own[rng.usize(..own.len())];
+        let (far, far_end) = others[rng.usize(..others.len())];
+        match rng.u8(..5) {
+            0 if elements => text.replace_range(start..end, ""),
+            1 => {
+                let piece = text[from..to].to_string();
+                text.replace_range(start..if elements { start } else { end }, &piece);
+            }
+            2 => text.replace_range(start..if elements { start } else { end }, &other[far..far_end]),
+            3 if !elements => text.replace_range(start..end, RARE[rng.usize(..RARE.len())].trim_matches(['"', '<'])),
+            _ => {
+                let number = rng.usize(0..40).to_string();
+                if !elements {
+                    text.replace_range(start..end, &number);
+                }
+            }
+        }
+    }
+    text
+}
+
+fn run(corpus: &[String], damage: fn(&mut Rng, &str, &str) -> String) {
     let (count, first) = (number("MUTATIONS", 1500), number("MUTATION_SEED", 1));
     let next = AtomicU64::new(first);
     let work = || {

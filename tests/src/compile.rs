@@ -1,4 +1,4 @@
-//! The compiler as a library: a source text to MIR, without the driver.
+//! The compiler as a library: a source text to MIR, without the driver. A text that begins with `<` is PLCopen XML.
 
 use plcc_diag::{Diagnostics, SourceMap};
 use plcc_hir::{Checked, Profile, Selection, Unit};
@@ -40,7 +40,9 @@ fn read(text: &str, profile: Profile) -> (Checked, Diagnostics, SourceMap) {
         blocks.map(|((_, t), id)| plcc_syntax::parse_file(*id, t, Profile::Strict, &mut Diagnostics::new())).collect()
     });
     let id = sources.add("program.st", text);
-    let program = plcc_syntax::parse_file(id, text, profile, &mut diags);
+    let parse = if text.starts_with('<') { plcc_syntax::parse_xml } else { plcc_syntax::parse_file };
+    let mut program = parse(id, text, profile, &mut diags);
+    plcc_hir::network::lower(&mut [&mut program], &mut diags);
     let builtin = standard.iter().zip(parsed);
     let mut units: Vec<Unit> =
         builtin.map(|(file, ast)| Unit { file: *file, ast, profile: Profile::Strict, builtin: true }).collect();

@@ -28,6 +28,8 @@ pub enum Color {
 }
 
 /// The commands.
+// Made once per process.
+#[allow(clippy::large_enum_variant)]
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Compile to a native executable, or print a stage.
@@ -40,6 +42,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Draw a program: its charts as SVG.
     Graph(GraphArgs),
+    /// Write PLCopen XML as text.
+    Convert(ConvertArgs),
     /// Show what a retain file holds, or compare it with another one or with a program.
     Retain {
         /// What to do.
@@ -63,7 +67,7 @@ pub enum Command {
 /// What is compiled, and how its sources are read.
 #[derive(Debug, Clone, Args)]
 pub struct SourceArgs {
-    /// project.toml, source files (.st .il .sfc .iec .txt), folders or globs.
+    /// project.toml, source files (.st .il .sfc .iec .txt .xml), folders or globs.
     #[arg(required = true, value_name = "project.toml|FILES")]
     pub files: Vec<String>,
     /// How strictly sources are read; the project file decides when this is not given.
@@ -217,6 +221,27 @@ pub struct CheckArgs {
     pub sources: SourceArgs,
 }
 
+/// `plcc convert`.
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub sources: SourceArgs,
+    /// Into what.
+    #[arg(long, value_enum)]
+    pub to: ToArg,
+    /// The file to write; standard output without it.
+    #[arg(short, long, value_name = "out.st")]
+    pub output: Option<PathBuf>,
+}
+
+/// `--to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ToArg {
+    /// Structured Text; Instruction List and charts keep their text notations.
+    St,
+}
+
 /// `plcc retain`.
 #[derive(Debug, Subcommand)]
 pub enum RetainAction {
@@ -258,7 +283,7 @@ pub struct GraphArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub sources: SourceArgs,
-    /// Draw the Sequential Function Charts.
+    /// Draw only the Sequential Function Charts, also those of texts.
     #[arg(long)]
     pub sfc: bool,
     /// Only the chart of this POU, with those of its actions, or of one action (POU.ACTION).

@@ -4,6 +4,7 @@
 pub mod bench;
 mod build;
 pub mod cli;
+mod convert;
 mod engines;
 mod explain;
 mod failure;
@@ -58,6 +59,7 @@ pub fn execute(cli: Cli) -> u8 {
         Command::Bench(args) => bench::command::bench(&args, color),
         Command::Check(args) => check(&args.sources, color),
         Command::Graph(args) => graph::graph(&args, color),
+        Command::Convert(args) => convert::convert(&args, color),
         Command::Retain { action } => retain::retain(&action, color),
         Command::Trace(args) => timing::trace(&args),
         Command::Explain { name } => explain::page(&name).map(|page| {

@@ -236,7 +236,10 @@ impl Lexer<'_, '_, '_> {
 
     fn pragma(&mut self) {
         let start = self.at;
-        let end = match self.bytes[start..].iter().position(|b| *b == b'}') {
+        // Code of another language stands in double braces and has braces of its own.
+        let double = self.byte(1) == b'{';
+        let twice = double.then(|| self.bytes[start..].windows(2).position(|w| w == b"}}")).flatten();
+        let end = match twice.map(|n| n + 1).or_else(|| self.bytes[start..].iter().position(|b| *b == b'}')) {
             Some(n) => start + n + 1,
             None => {
                 let end = self.line_end();

@@ -51,6 +51,8 @@ pub fn parse_file(file: FileId, text: &str, profile: Profile, diags: &mut Diagno
 
 /// Reads a PLCopen TC6 XML file. Mistakes are reported and leave error nodes.
 pub use xml::parse_xml;
+/// A part of an XML file as the text that it stands for: without markup, with characters for their references.
+pub use xml::plain_text;
 
 /// Parses an expression that stands alone, such as a watch. `None` if it is none; reported then.
 pub fn parse_expression(file: FileId, text: &str, diags: &mut Diagnostics) -> Option<ast::Expr> {

@@ -1,11 +1,13 @@
-//! `plcc graph FILE --sfc`: charts as SVG.
+//! `plcc graph FILE`: charts as SVG, and networks from PLCopen XML.
 //!
-//! `chart` is what is drawn, `tree` its shape, `layout` places it, `svg` writes it; `trace` knows the active steps of a cycle.
+//! `chart` is what is drawn, `tree` its shape, `layout` places it; `network` places LD and FBD; `svg` writes both; `trace` knows the
+//! active steps of a cycle.
 //! Charts are taken from the syntax tree and texts from the source, so a chart is drawn as it is written, and also while
 //! other parts of the program are still wrong.
 
 mod chart;
 mod layout;
+mod network;
 mod picture;
 mod svg;
 #[cfg(test)]
@@ -23,29 +25,33 @@ use plcc_syntax::ast;
 
 /// Draws what the command line says.
 pub fn graph(args: &GraphArgs, color: crate::cli::Color) -> Result<u8, Failure> {
-    if !args.sfc {
+    let (_, sources, ids) = pipeline::load(&args.sources)?;
+    let drawn = sources.iter().any(|(_, file)| crate::project::is_xml(std::path::Path::new(&file.name)));
+    if !args.sfc && !drawn {
         return Err(Failure::usage("say what to draw: --sfc draws the charts"));
     }
-    let (_, sources, ids) = pipeline::load(&args.sources)?;
     let parsed = pipeline::parse(sources, &ids);
     crate::report(&parsed, None, args.sources.message_format, color)?;
-    let mut charts = charts(&parsed)?;
+    let mut charts = charts(&parsed, args.sfc)?;
     if let Some(wanted) = &args.pou {
         let names: Vec<String> = charts.iter().map(|c| c.name.clone()).collect();
         charts.retain(|c| c.name.eq_ignore_ascii_case(wanted) || c.pou.eq_ignore_ascii_case(wanted));
         if charts.is_empty() {
             let near = plcc_hir::similar(wanted, names.iter().map(String::as_str));
             let near = near.map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
-            return Err(Failure::usage(format!("--pou: there is no chart `{wanted}`{near}")));
+            let what = if args.sfc { "chart" } else { "chart or network" };
+            return Err(Failure::usage(format!("--pou: there is no {what} `{wanted}`{near}")));
         }
     }
     if charts.is_empty() {
-        return Err(Failure::usage("there is no Sequential Function Chart in the sources"));
+        let what = if args.sfc { "Sequential Function Chart" } else { "body in LD, FBD or SFC" };
+        return Err(Failure::usage(format!("there is no {what} in the sources")));
     }
     let mut cycle = None;
     if let Some(path) = &args.trace {
         let number = args.cycle.ok_or_else(|| Failure::usage("--trace needs --cycle N: which row to show"))?;
         let row = trace::Row::read(path, number)?;
+        charts.retain(|c| c.network.is_none());
         for chart in &mut charts {
             row.mark(chart, args.instance.as_deref())?;
         }
@@ -56,7 +62,7 @@ pub fn graph(args: &GraphArgs, color: crate::cli::Color) -> Result<u8, Failure> 
     Ok(0)
 }
 
-fn write(text: &str, output: Option<&std::path::Path>) -> Result<(), Failure> {
+pub(crate) fn write(text: &str, output: Option<&std::path::Path>) -> Result<(), Failure> {
     let Some(path) = output.filter(|path| *path != std::path::Path::new("-")) else {
         use std::io::Write;
         return match std::io::stdout().lock().write_all(text.as_bytes()) {
@@ -69,25 +75,31 @@ fn write(text: &str, output: Option<&std::path::Path>) -> Result<(), Failure> {
     std::fs::write(path, text).map_err(|e| Failure::io("write", path, e))
 }
 
-/// A chart with its names.
+/// A chart or a network with its names.
 struct Named {
     /// `Main`, or `Main.Act` for an action.
     name: String,
     /// The POU that keeps its steps.
     pou: String,
+    /// Empty for a network.
     chart: Chart,
+    network: Option<ast::Network>,
 }
 
-/// All charts of the user's files, in the order of the text.
-fn charts(parsed: &Parsed) -> Result<Vec<Named>, Failure> {
+/// All charts of the user's files, and networks unless only charts are asked for, in the order of the text.
+fn charts(parsed: &Parsed, only_charts: bool) -> Result<Vec<Named>, Failure> {
     let mut found = Vec::new();
     for (_, _, builtin, file) in &parsed.files {
         if *builtin {
             continue;
         }
         let mut add = |name: String, pou: &str, body: &ast::Body| -> Result<(), Failure> {
-            let ast::Body::Sfc(sfc) = body else { return Ok(()) };
-            found.push(Named { name, pou: pou.to_string(), chart: read(sfc, &parsed.sources)? });
+            let (chart, network) = match body {
+                ast::Body::Sfc(sfc) => (read(sfc, &parsed.sources)?, None),
+                ast::Body::Network(network) if !only_charts => (Chart::default(), Some(network.clone())),
+                _ => return Ok(()),
+            };
+            found.push(Named { name, pou: pou.to_string(), chart, network });
             Ok(())
         };
         for item in &file.items {
@@ -113,13 +125,18 @@ fn charts(parsed: &Parsed) -> Result<Vec<Named>, Failure> {
 
 fn read(body: &ast::SfcBody, sources: &SourceMap) -> Result<Chart, Failure> {
     let mut chart = Chart::default();
-    let lines = |span: Span| plcc_syntax::without_comments(span.file, sources.text(span));
+    let xml = crate::project::is_xml(std::path::Path::new(&sources.file(body.span.file).name));
+    let lines = |span: Span| match xml {
+        true => plcc_syntax::without_comments(span.file, &plcc_syntax::plain_text(sources.text(span))),
+        false => plcc_syntax::without_comments(span.file, sources.text(span)),
+    };
     let text = |span: Span| lines(span).replace('\n', " ");
     for element in &body.elements {
         let ast::SfcElement::Step(step) = element else { continue };
         let action = |a: &ast::ActionAssociation| Action {
             qualifier: a.qualifier.as_ref().map_or("N".into(), |q| q.text.to_uppercase()),
-            name: text(a.action.span),
+            // An action inside a chart in XML has a name, but no text.
+            name: ast::source::expression(&a.action),
             time: a.time.as_ref().map(|t| text(t.span)).unwrap_or_default(),
             indicator: a.indicators.iter().map(|i| text(i.span)).collect::<Vec<_>>().join(", "),
         };
@@ -181,7 +198,10 @@ fn sheet(charts: &[Named], cycle: Option<u64>) -> Picture {
     const HEADING: i32 = 32;
     let mut sheet = Picture::default();
     for named in charts {
-        let mut picture = layout::place(&named.chart);
+        let mut picture = match &named.network {
+            Some(network) => network::place(network),
+            None => layout::place(&named.chart),
+        };
         let title = match cycle {
             Some(cycle) => Some(format!("{}, cycle {cycle}", named.name)),
             None if charts.len() > 1 => Some(named.name.clone()),

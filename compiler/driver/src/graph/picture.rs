@@ -88,6 +88,51 @@ pub enum Shape {
         /// Double: simultaneous branches begin or end.
         double: bool,
     },
+    /// A line between pins, with its corners.
+    Wire {
+        /// From the beginning to the end; at least two.
+        points: Vec<(i32, i32)>,
+    },
+    /// Where lines meet.
+    Dot {
+        /// Its middle.
+        x: i32,
+        /// Its middle.
+        y: i32,
+    },
+    /// An element of a network that is no block.
+    Symbol {
+        /// Around it, without the text above.
+        rect: Rect,
+        /// Which.
+        symbol: Symbol,
+        /// Its variable or name.
+        text: String,
+        /// `/` negated, `S` set, `R` reset, `P` and `N` edges.
+        mark: String,
+    },
+    /// A block of a network.
+    Block {
+        /// The box.
+        rect: Rect,
+        /// The function or type.
+        ty: String,
+        /// Its instance, maybe empty.
+        instance: String,
+        /// Height, name and mark of the inputs.
+        ins: Vec<(i32, String, String)>,
+        /// Of the outputs.
+        outs: Vec<(i32, String, String)>,
+        /// The execution order, maybe empty.
+        order: String,
+    },
+    /// A comment.
+    Remark {
+        /// Its box.
+        rect: Rect,
+        /// Its text.
+        lines: Vec<String>,
+    },
     /// A heading.
     Title {
         /// Around the text.
@@ -95,6 +140,25 @@ pub enum Shape {
         /// The text.
         text: String,
     },
+}
+
+/// Elements of networks that are no blocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symbol {
+    /// A power rail.
+    Rail,
+    /// A contact, its variable above.
+    Contact,
+    /// A coil, its variable above.
+    Coil,
+    /// A variable that is read, in a box; its value leaves on the right.
+    Read,
+    /// A variable that is written, in a box.
+    Written,
+    /// Where a line goes on elsewhere: connectors, jumps, returns.
+    Link,
+    /// A jump target.
+    Label,
 }
 
 impl Shape {
@@ -107,15 +171,51 @@ impl Shape {
             | Shape::Jump { rect, .. }
             | Shape::Arrival { rect, .. }
             | Shape::Line { rect, .. }
-            | Shape::Title { rect, .. } => *rect,
+            | Shape::Title { rect, .. }
+            | Shape::Block { rect, .. }
+            | Shape::Remark { rect, .. } => *rect,
+            Shape::Symbol { rect, symbol, text, .. } => match symbol {
+                // The text above may be wider.
+                Symbol::Contact | Symbol::Coil => {
+                    let more = (super::layout::width(text) - (rect.right - rect.left)).max(0) / 2 + 1;
+                    Rect { top: rect.top - 18, ..rect.wider(more) }
+                }
+                _ => *rect,
+            },
+            Shape::Dot { x, y } => Rect { left: x - 3, top: y - 3, right: x + 3, bottom: y + 3 },
+            Shape::Wire { points } => {
+                let xs = || points.iter().map(|p| p.0);
+                let ys = || points.iter().map(|p| p.1);
+                Rect {
+                    left: xs().min().unwrap_or(0),
+                    top: ys().min().unwrap_or(0),
+                    right: xs().max().unwrap_or(0),
+                    bottom: ys().max().unwrap_or(0),
+                }
+            }
         }
     }
 
     /// Moves it.
     pub fn shift(&mut self, dx: i32, dy: i32) {
         match self {
-            Shape::Step { rect, .. } | Shape::Line { rect, .. } | Shape::Title { rect, .. } => {
-                *rect = rect.moved(dx, dy)
+            Shape::Step { rect, .. }
+            | Shape::Line { rect, .. }
+            | Shape::Title { rect, .. }
+            | Shape::Symbol { rect, .. }
+            | Shape::Remark { rect, .. } => *rect = rect.moved(dx, dy),
+            Shape::Block { rect, ins, outs, .. } => {
+                *rect = rect.moved(dx, dy);
+                ins.iter_mut().chain(outs).for_each(|(y, _, _)| *y += dy);
+            }
+            Shape::Wire { points } => {
+                for point in points {
+                    *point = (point.0 + dx, point.1 + dy);
+                }
+            }
+            Shape::Dot { x, y } => {
+                *x += dx;
+                *y += dy;
             }
             Shape::Action { rect, cells, .. } => {
                 *rect = rect.moved(dx, dy);

@@ -1,7 +1,7 @@
 //! A picture as SVG. Colours follow the reader's light or dark scheme.
 
 use super::layout::{DOUBLE, FONT};
-use super::picture::{Picture, Rect, Shape};
+use super::picture::{Picture, Rect, Shape, Symbol};
 use std::fmt::Write;
 
 /// Classes with their colours: first the light ones, then those for readers that prefer dark. No CSS variables: not every
@@ -34,6 +34,23 @@ const STYLE: &str = "\
 }
 ";
 
+/// The same for the parts of networks; a drawing without networks does not hold it.
+const NETWORK_STYLE: &str = "\
+.sfc .net { fill: none; stroke: #1f2933; stroke-width: 1.5; }
+.sfc .variable { fill: #ffffff; stroke: #9aa7b5; stroke-width: 1; }
+.sfc .soft { fill: #eef2f6; stroke: #9aa7b5; stroke-width: 1; }
+.sfc .pin { fill: #ffffff; stroke: #1f2933; stroke-width: 1.5; }
+.sfc .small { font-size: 11px; fill: #5b6876; }
+.sfc .joint { fill: #1f2933; }
+@media (prefers-color-scheme: dark) {
+.sfc .net, .sfc .pin { stroke: #e2e8f0; }
+.sfc .variable, .sfc .pin { fill: #14181d; }
+.sfc .soft { fill: #1b2129; stroke: #5b6876; }
+.sfc .small { fill: #9aa7b5; }
+.sfc .joint { fill: #e2e8f0; }
+}
+";
+
 /// The picture as a document.
 pub fn write(picture: &Picture) -> String {
     let (width, height) = (picture.width.max(1), picture.height.max(1));
@@ -42,13 +59,17 @@ pub fn write(picture: &Picture) -> String {
         out.0,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"sfc\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">"
     );
-    let _ = write!(out.0, "<style>\n{STYLE}</style>\n");
+    let network =
+        |s: &Shape| matches!(s, Shape::Wire { .. } | Shape::Symbol { .. } | Shape::Block { .. } | Shape::Remark { .. });
+    let more = if picture.shapes.iter().any(network) { NETWORK_STYLE } else { "" };
+    let _ = write!(out.0, "<style>\n{STYLE}{more}</style>\n");
     out.rect("paper", Rect { left: 0, top: 0, right: width, bottom: height });
     // Lines first, boxes over their ends.
-    for shape in picture.shapes.iter().filter(|s| matches!(s, Shape::Line { .. })) {
+    let line = |s: &&Shape| matches!(s, Shape::Line { .. } | Shape::Wire { .. });
+    for shape in picture.shapes.iter().filter(line) {
         out.shape(shape);
     }
-    for shape in picture.shapes.iter().filter(|s| !matches!(s, Shape::Line { .. })) {
+    for shape in picture.shapes.iter().filter(|s| !line(s)) {
         out.shape(shape);
     }
     out.0.push_str("</svg>\n");
@@ -105,6 +126,35 @@ impl Svg {
                 self.line("line", rect.left, rect.top, rect.right, rect.top);
                 self.line("line", rect.left, rect.top + DOUBLE, rect.right, rect.top + DOUBLE);
             }
+            Shape::Wire { points } => {
+                let corners: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
+                let _ = writeln!(self.0, "<polyline class=\"net\" points=\"{}\"/>", corners.join(" "));
+            }
+            Shape::Dot { x, y } => {
+                let _ = writeln!(self.0, "<circle class=\"joint\" cx=\"{x}\" cy=\"{y}\" r=\"3\"/>");
+            }
+            Shape::Symbol { rect, symbol, text, mark } => self.symbol(*rect, *symbol, text, mark),
+            Shape::Block { rect, ty, instance, ins, outs, order } => {
+                self.rect("box", *rect);
+                let middle = (rect.left + rect.right) / 2;
+                self.text("name", "middle", middle, rect.top + FONT + 4, ty);
+                self.text("", "middle", middle, rect.top - 5, instance);
+                self.text("small", "end", rect.right, rect.bottom + FONT, order);
+                for (y, name, mark) in ins {
+                    self.text("", "start", rect.left + 8, y + 4, name);
+                    self.pin(rect.left, *y, mark, true);
+                }
+                for (y, name, mark) in outs {
+                    self.text("", "end", rect.right - 8, y + 4, name);
+                    self.pin(rect.right, *y, mark, false);
+                }
+            }
+            Shape::Remark { rect, lines } => {
+                self.rect("soft", *rect);
+                for (n, line) in lines.iter().enumerate() {
+                    self.text("head", "start", rect.left + 6, rect.top + FONT + 3 + n as i32 * (FONT + 4), line);
+                }
+            }
             Shape::Title { rect, text } => self.text("title", "start", rect.left, rect.bottom - 5, text),
         }
     }
@@ -120,6 +170,60 @@ impl Svg {
         if active {
             let _ = writeln!(self.0, "<circle class=\"dot\" cx=\"{middle}\" cy=\"{}\" r=\"3.5\"/>", rect.bottom - 8);
         }
+    }
+
+    /// An element of a network: its variable above or inside, what changes its value as a letter.
+    fn symbol(&mut self, rect: Rect, symbol: Symbol, text: &str, mark: &str) {
+        let (middle, level) = ((rect.left + rect.right) / 2, (rect.top + rect.bottom) / 2);
+        match symbol {
+            Symbol::Rail => self.rect("joint", rect),
+            Symbol::Contact | Symbol::Coil => {
+                // The line goes through the paper behind it.
+                let gap = Rect { left: middle - 8, right: middle + 8, top: level - 9, bottom: level + 9 };
+                self.line("net", rect.left, level, gap.left, level);
+                self.line("net", gap.right, level, rect.right, level);
+                self.rect("paper", gap);
+                if symbol == Symbol::Contact {
+                    self.line("line", gap.left, gap.top, gap.left, gap.bottom);
+                    self.line("line", gap.right, gap.top, gap.right, gap.bottom);
+                } else {
+                    for (x, bow) in [(gap.left, -5), (gap.right, 5)] {
+                        let _ = writeln!(
+                            self.0,
+                            "<path class=\"net\" d=\"M{x} {}Q{} {level} {x} {}\"/>",
+                            gap.top,
+                            x + bow,
+                            gap.bottom
+                        );
+                    }
+                }
+                self.text("", "middle", middle, level + 4, mark);
+                self.text("", "middle", middle, rect.top - 4, text);
+            }
+            Symbol::Read | Symbol::Written => {
+                self.rect("variable", rect);
+                self.text("", "middle", middle, baseline(rect), text);
+                match symbol {
+                    Symbol::Read => self.pin(rect.right, level, mark, false),
+                    _ => self.pin(rect.left, level, mark, true),
+                }
+            }
+            Symbol::Link => {
+                self.rect("soft", rect);
+                self.text("", "middle", middle, baseline(rect), text);
+            }
+            Symbol::Label => self.text("name", "start", rect.left, baseline(rect), text),
+        }
+    }
+
+    /// A pin of a block that is negated (a ring) or takes an edge.
+    fn pin(&mut self, x: i32, y: i32, mark: &str, input: bool) {
+        if mark.contains('/') {
+            let x = if input { x - 5 } else { x + 5 };
+            let _ = writeln!(self.0, "<circle class=\"pin\" cx=\"{x}\" cy=\"{y}\" r=\"4\"/>");
+        }
+        let letters: String = mark.chars().filter(|c| *c != '/').collect();
+        self.text("small", if input { "end" } else { "start" }, if input { x - 4 } else { x + 4 }, y - 4, &letters);
     }
 
     fn rect(&mut self, class: &str, rect: Rect) {

@@ -116,7 +116,13 @@ impl Resolver<'_, '_, '_, '_> {
                         );
                         continue;
                     }
+                    let before = open.len();
                     open.extend(self.network.elements[connector].inputs.iter().flat_map(|p| &p.connections));
+                    if open.len() == before {
+                        let span = self.network.elements[connector].span;
+                        let message = format!("the connector `{}` is not connected", name.text);
+                        self.say(codes::UNCONNECTED_PIN, span, message, "connect it");
+                    }
                 }
                 ElementKind::RightRail
                 | ElementKind::Out { .. }

@@ -35,6 +35,7 @@ const OPERATORS: [(&str, BinaryOp); 14] = [
 
 /// The statements of a network, and the value of its condition if it has one.
 pub(super) fn statements(network: &Network, owner: &mut Owner, diags: &mut Diagnostics) -> (Vec<Stmt>, Option<Expr>) {
+    let errors = diags.error_count();
     let links = resolve(network, owner, diags);
     let order = order(network, &links);
     let mut position = vec![usize::MAX; network.elements.len()];
@@ -61,12 +62,21 @@ pub(super) fn statements(network: &Network, owner: &mut Owner, diags: &mut Diagn
         readers: FxHashMap::default(),
         out: Vec::new(),
         condition: None,
+        lost: None,
     };
     writer.count_uses();
     for (place, element) in order.iter().enumerate() {
         writer.element(*element, order.get(place + 1).copied());
     }
-    (writer.out, writer.condition)
+    let Writer { out, condition, lost, diags, .. } = writer;
+    // A value that is missing without a word would change what the program does.
+    if let Some(span) = lost.filter(|_| diags.error_count() == errors) {
+        diags.push(
+            Diagnostic::new(codes::UNCONNECTED_PIN, span, "no value comes over this connection")
+                .help("draw this connection again"),
+        );
+    }
+    (out, condition)
 }
 
 /// A value that was computed.
@@ -97,6 +107,8 @@ struct Writer<'n, 'o, 'u, 'd> {
     readers: FxHashMap<String, Vec<Source>>,
     out: Vec<Stmt>,
     condition: Option<Expr>,
+    /// Where a value is missing.
+    lost: Option<Span>,
 }
 
 /// What a statement writes.
@@ -132,8 +144,33 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 }
             }
         }
+        for (element, drawn) in self.network.elements.iter().enumerate() {
+            for pin in drawn.outputs.iter().enumerate().filter(|(_, p)| p.operand.is_some()).map(|(n, _)| n) {
+                *self.uses.entry(Source { element, pin }).or_default() += 1;
+            }
+        }
         for (source, span) in late {
             self.read_late(source, span);
+        }
+    }
+
+    /// The variables that stand at the outputs of a block take their values.
+    fn assign_operands(&mut self, index: usize) {
+        let element = self.at(index);
+        let function = matches!(element.kind, ElementKind::Block { instance: None, .. });
+        for (pin, output) in element.outputs.iter().enumerate() {
+            let Some(target) = &output.operand else { continue };
+            let source = Source { element: index, pin };
+            let Some(value) = self.values.get_mut(&source) else {
+                self.missing(output.span);
+                continue;
+            };
+            value.uses = value.uses.saturating_sub(1);
+            let value = value.expr.clone();
+            let guarded = function && self.has_en(index) && !output.name.eq_ignore_ascii_case("ENO");
+            let eno = Source { element: index, pin: ENO };
+            let guard = self.values.get(&eno).filter(|_| guarded).map(|v| v.expr.clone());
+            self.store(target, value, Modifier::default(), index, guard);
         }
     }
 
@@ -197,12 +234,18 @@ impl<'n> Writer<'n, '_, '_, '_> {
             return match self.late.get(&source) {
                 Some(Some(name)) => variable(name, span),
                 Some(None) => self.stored(element, source.pin, span),
-                None => error(span),
+                None => self.missing(span),
             };
         }
-        let Some(value) = self.values.get_mut(&source) else { return error(span) };
+        let Some(value) = self.values.get_mut(&source) else { return self.missing(span) };
         value.uses = value.uses.saturating_sub(1);
         value.expr.clone()
+    }
+
+    /// A value that is not there; what is wrong was told, or will be at the end.
+    fn missing(&mut self, span: Span) -> Expr {
+        self.lost.get_or_insert(span);
+        error(span)
     }
 
     /// An output that is a variable anyway.
@@ -388,7 +431,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
         let sources = self.links.inputs[element].get(pin).map(Vec::as_slice).unwrap_or_default();
         let span = drawn.span;
         let mut values: Vec<Expr> = sources.iter().map(|(s, at)| self.take(*s, element, *at)).collect();
-        values.extend(found.literal.clone());
+        values.extend(found.operand.clone());
         if values.len() > 1 && self.network.notation == Notation::Fbd {
             let mut places = sources.iter().map(|(_, at)| *at);
             let (first, second) = (places.next().unwrap_or(span), places.next().unwrap_or(span));
@@ -402,10 +445,11 @@ impl<'n> Writer<'n, '_, '_, '_> {
         }
         if values.is_empty() {
             // A connection that was reported counts as one.
-            return (!found.connections.is_empty()).then(|| error(span));
+            return (!found.connections.is_empty()).then(|| self.missing(span));
         }
-        let value = or(values, span)?;
-        Some(self.modified(value, found.modifier, element))
+        // A value stands where it is used: messages name the pin, and arguments have the order of the pins.
+        let value = Expr { span: found.span, ..or(values, span)? };
+        Some(Expr { span: found.span, ..self.modified(value, found.modifier, element) })
     }
 
     /// An input that must be connected.
@@ -478,7 +522,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
             }
             // Left over in many drawings; it changes nothing.
             ElementKind::Out { .. }
-                if element.inputs.iter().all(|p| p.connections.is_empty() && p.literal.is_none()) =>
+                if element.inputs.iter().all(|p| p.connections.is_empty() && p.operand.is_none()) =>
             {
                 self.say(
                     codes::IDLE_ELEMENT,
@@ -501,8 +545,14 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 let value = if *negated_out { not(variable.clone(), span) } else { variable.clone() };
                 self.give(own, value, *negated_out);
             }
-            ElementKind::Block { ty, instance: Some(instance) } => self.function_block(index, ty, instance),
-            ElementKind::Block { ty, instance: None } => self.function(index, ty, next),
+            ElementKind::Block { ty, instance: Some(instance) } => {
+                self.function_block(index, ty, instance);
+                self.assign_operands(index);
+            }
+            ElementKind::Block { ty, instance: None } => {
+                self.function(index, ty, next);
+                self.assign_operands(index);
+            }
             ElementKind::Label(name) => {
                 self.flush_all();
                 self.out.push(Stmt { kind: StmtKind::Label(name.clone()), span });
@@ -565,7 +615,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
     fn has_en(&self, index: usize) -> bool {
         let pins = self.at(index).inputs.iter();
         let mut en = pins.filter(|p| p.name.eq_ignore_ascii_case("EN"));
-        en.any(|p| !p.connections.is_empty() || p.literal.is_some())
+        en.any(|p| !p.connections.is_empty() || p.operand.is_some())
     }
 
     /// Values at the inputs of a block, by pin.
@@ -583,8 +633,11 @@ impl<'n> Writer<'n, '_, '_, '_> {
         writes.truncate(1);
         let mut in_out: FxHashMap<String, Expr> = FxHashMap::default();
         for (pin, value) in element.inputs.iter().zip(values) {
-            let Some(value) = value else { continue };
+            let Some(mut value) = value else { continue };
             if is_in_out(element, pin) {
+                if let ExprKind::Name(name) = &mut value.kind {
+                    name.span = pin.span;
+                }
                 reads(&value, &mut writes);
                 in_out.insert(pin.name.to_ascii_uppercase(), value.clone());
             }
@@ -681,7 +734,7 @@ impl<'n> Writer<'n, '_, '_, '_> {
         let bare = match self.as_operator(element, &key, &values, user, effects) {
             Some(operator) => operator,
             None => {
-                let mut args = self.formal(element, values);
+                let mut args = self.formal(element, values, !outputs.is_empty() || hidden_eno.is_some());
                 for (number, name) in &outputs {
                     args.push(output(&element.outputs[*number].name, variable(name, span), span));
                 }
@@ -806,12 +859,13 @@ impl<'n> Writer<'n, '_, '_, '_> {
         values.into_iter().reduce(|a, b| binary(*op, a, b, span))
     }
 
-    /// The arguments by their names; a single one without.
-    fn formal(&self, element: &'n Element, values: Vec<Option<Expr>>) -> Vec<Arg> {
+    /// The arguments by their names; a single one without, unless outputs follow.
+    fn formal(&self, element: &'n Element, values: Vec<Option<Expr>>, outputs: bool) -> Vec<Arg> {
         let connected: Vec<(&Pin, Expr)> =
             element.inputs.iter().zip(values).filter_map(|(pin, value)| value.map(|v| (pin, v))).collect();
-        let alone =
-            connected.len() == 1 && (connected[0].0.name.eq_ignore_ascii_case("IN") || connected[0].0.name.is_empty());
+        let alone = !outputs
+            && connected.len() == 1
+            && (connected[0].0.name.eq_ignore_ascii_case("IN") || connected[0].0.name.is_empty());
         let nameless = connected.iter().all(|(pin, _)| pin.name.is_empty());
         connected
             .into_iter()

@@ -110,6 +110,21 @@ impl BinaryOp {
             OrElse => "OR_ELSE",
         }
     }
+
+    /// How much it binds (semantics.md \[S1\]); operators of one level group from the left.
+    pub fn precedence(self) -> u8 {
+        use BinaryOp::*;
+        match self {
+            Or | OrElse => 1,
+            Xor => 2,
+            And | AndThen => 3,
+            Eq | Ne => 4,
+            Lt | Gt | Le | Ge => 5,
+            Add | Sub => 6,
+            Mul | Div | Mod => 7,
+            Power => 8,
+        }
+    }
 }
 
 /// A literal as written: values come from the type at its place (`stdlib::literal`).

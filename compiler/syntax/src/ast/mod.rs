@@ -10,6 +10,7 @@ pub mod il;
 pub mod network;
 pub mod print;
 pub mod sfc;
+pub mod source;
 pub mod st;
 
 pub use config::*;

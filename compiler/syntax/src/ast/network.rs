@@ -155,8 +155,8 @@ pub struct Pin {
     pub in_out: bool,
     /// What leads here; outputs have none.
     pub connections: Vec<Connection>,
-    /// An expression that stands at the pin itself.
-    pub literal: Option<Expr>,
+    /// What stands at the pin itself: at an input the value, at an output the variable that takes it.
+    pub operand: Option<Expr>,
     /// Where it is written.
     pub span: Span,
 }
@@ -180,15 +180,15 @@ impl Element {
         let kind = match &self.kind {
             ElementKind::LeftRail => "left power rail".into(),
             ElementKind::RightRail => "right power rail".into(),
-            ElementKind::Contact { variable, .. } => format!("contact `{}`", super::print::print_expr(variable)),
-            ElementKind::Coil { variable, .. } => format!("coil `{}`", super::print::print_expr(variable)),
+            ElementKind::Contact { variable, .. } => format!("contact `{}`", super::source::expression(variable)),
+            ElementKind::Coil { variable, .. } => format!("coil `{}`", super::source::expression(variable)),
             ElementKind::Block { ty, instance: None } => format!("block `{}`", ty.text),
             ElementKind::Block { ty, instance: Some(i) } => {
-                format!("block `{}` ({})", super::print::print_expr(i), ty.text)
+                format!("block `{}` ({})", super::source::expression(i), ty.text)
             }
             ElementKind::In { value: e, .. }
             | ElementKind::Out { target: e, .. }
-            | ElementKind::InOut { variable: e, .. } => format!("variable `{}`", super::print::print_expr(e)),
+            | ElementKind::InOut { variable: e, .. } => format!("variable `{}`", super::source::expression(e)),
             ElementKind::Connector(name) => format!("connector `{}`", name.text),
             ElementKind::Continuation(name) => format!("continuation `{}`", name.text),
             ElementKind::Label(name) => format!("label `{}`", name.text),

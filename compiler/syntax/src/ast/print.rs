@@ -98,12 +98,13 @@ impl Printer {
                             Some(name) => format!("{}.{name}", c.from),
                             None => c.from.to_string(),
                         });
-                        let literal = pin.literal.iter().map(print_expr);
-                        let sources: Vec<String> = sources.chain(literal).collect();
+                        let operand = pin.operand.iter().map(print_expr);
+                        let sources: Vec<String> = sources.chain(operand).collect();
                         p.line(&format!("in `{}`{} from {}", pin.name, modifier(pin.modifier), sources.join(", ")));
                     }
                     for pin in element.outputs.iter().filter(|p| !p.name.is_empty()) {
-                        p.line(&format!("out `{}`{}", pin.name, modifier(pin.modifier)));
+                        let to = pin.operand.as_ref().map_or(String::new(), |e| format!(" to {}", print_expr(e)));
+                        p.line(&format!("out `{}`{}{to}", pin.name, modifier(pin.modifier)));
                     }
                 });
             }

@@ -118,7 +118,7 @@ impl Context<'_> {
     fn attach(&self, left: Expr, op: BinaryOp, at: Span, right: Expr) -> Expr {
         match left {
             Expr { kind: ExprKind::Binary(outer, outer_at, a, b), parens: false, .. }
-                if precedence(outer) < precedence(op) =>
+                if outer.precedence() < op.precedence() =>
             {
                 let b = self.attach(*b, op, at, right);
                 self.binary_node(outer, outer_at, *a, b)
@@ -178,20 +178,5 @@ fn binary_op(text: &str) -> BinaryOp {
             "OR_ELSE" => OrElse,
             _ => Or,
         },
-    }
-}
-
-/// How strongly an operator binds (semantics.md \[S1\]); all associate to the left.
-fn precedence(op: BinaryOp) -> u8 {
-    use BinaryOp::*;
-    match op {
-        Or | OrElse => 1,
-        Xor => 2,
-        And | AndThen => 3,
-        Eq | Ne => 4,
-        Lt | Gt | Le | Ge => 5,
-        Add | Sub => 6,
-        Mul | Div | Mod => 7,
-        Power => 8,
     }
 }

@@ -285,7 +285,7 @@ impl Reader<'_, '_> {
             modifier: Modifier { negated, ..Modifier::default() },
             in_out: false,
             connections,
-            literal: None,
+            operand: None,
             span,
         };
         let id = elements.iter().map(|e| e.id).max().unwrap_or(0).saturating_add(1);

@@ -162,6 +162,7 @@ impl Reader<'_, '_> {
                 let mut pin = self.pin(variable, Some(variable));
                 pin.at = child(point_out, "relPosition").map(point).unwrap_or_default();
                 pin.in_out = in_out;
+                pin.operand = self.operand(point_out);
                 pins.push(pin);
             }
         }
@@ -177,7 +178,7 @@ impl Reader<'_, '_> {
             modifier: self.modifier(owner),
             in_out: false,
             connections: Vec::new(),
-            literal: None,
+            operand: None,
             span: self.tag(owner),
         }
     }
@@ -186,9 +187,14 @@ impl Reader<'_, '_> {
     pub(super) fn pin_in(&mut self, point_in: Node, owner: Option<Node>) -> Pin {
         let mut pin = self.pin(point_in, owner);
         pin.connections = named(point_in, "connection").filter_map(|c| self.connection(c)).collect();
-        // An expression at the pin, instead of a connection.
-        pin.literal = child(point_in, "expression").map(|e| self.expression_in(e, "this pin"));
+        pin.operand = self.operand(point_in);
         pin
+    }
+
+    /// An expression at a pin, instead of a connection.
+    fn operand(&mut self, point: Node) -> Option<Expr> {
+        let holder = child(point, "expression").filter(|e| !self.plain_text(*e).trim().is_empty())?;
+        Some(self.expression_in(holder, "this pin"))
     }
 
     pub(super) fn connection(&mut self, node: Node) -> Option<Connection> {

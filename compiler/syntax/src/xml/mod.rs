@@ -88,6 +88,11 @@ pub fn parse_xml(file: FileId, text: &str, profile: Profile, diags: &mut Diagnos
     out
 }
 
+/// A part of an XML file as the text that it stands for.
+pub fn plain_text(xml: &str) -> String {
+    view::decode(xml).replace(char::from(crate::lexer::FILLER), "")
+}
+
 /// Where elements nest too deep or have too many attributes, found before anything recurses over them or compares them.
 /// Comments and CDATA sections are stepped over.
 fn too_much(text: &str) -> Option<(usize, String)> {

@@ -65,7 +65,7 @@ fn content(text: &str, node: Node) -> Range<usize> {
 }
 
 /// A well-formed part of an XML file with blanks for markup and characters for their references, of the same length.
-fn decode(raw: &str) -> String {
+pub(super) fn decode(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     let mut rest = raw;
     while let Some(c) = rest.chars().next() {
