@@ -64,7 +64,8 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     let vcd =
         flags.vcd.as_deref().map(|path| Vcd::open(path, image, columns.clone())).transpose().map_err(unwritable)?;
     let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(unwritable)?;
-    let driver = io::open(flags.io.as_deref().or(image.defaults.io.as_deref()).unwrap_or("none"), image, &resolver)?;
+    let driver_name = flags.io.as_deref().or(image.defaults.io.as_deref()).unwrap_or("none");
+    let driver = io::open(driver_name, image, &resolver)?;
     signals::install();
     let (retain, restored, writers) = open_retain(image, &resolver, flags)?;
     let mut mem = Region::new(image.region_bytes as usize);
@@ -119,7 +120,7 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     }
     let report = |workers: &[(Worker, i64)]| print_now(image, &workers.iter().map(|(w, _)| w).collect::<Vec<_>>());
     // What is recorded needs one moment for all resources: then they run one after the other, as in virtual time.
-    let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some();
+    let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some() || driver_name.starts_with("csv:");
     let (end, workers) = if image.resources.len() > 1 && !flags.virtual_time && !recorded {
         run_threads(image, &mut mem, workers, edges, shared_retain, flags, interval_ns)
     } else {
