@@ -14,10 +14,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
 ];
 
 /// Ids whose feature is not built yet, with the issue that builds it. An id that gets a case leaves this list.
-const NOT_BUILT: &[(&str, &str)] = &[
-    // Several RESOURCEs.
-    ("C3", "issue 7"),
-];
+const NOT_BUILT: &[(&str, &str)] = &[];
 
 /// Ids in a text, `[T1]`.
 fn ids_in(text: &str) -> BTreeSet<String> {

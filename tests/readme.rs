@@ -162,6 +162,7 @@ fn examples_give_their_traces() {
              Main.control.horn,Main.control.lamp,Main.fill.open,Main.steam.open,Main.control.Automatic.X,\
              Main.control.Protect.X,Main.control.sequence.Heating.X,Main.tank.level,Main.tank.temperature",
         ),
+        ("path", ".", "6", "Main.level,Main.passes,Main.strongest"),
         ("alarm", "il", "30", alarm),
         ("alarm", "st", "30", alarm),
         ("alarm", "sfc", "30", alarm),

@@ -92,7 +92,7 @@ fn side(names: &[String], image: &Image, resolver: &Resolver) -> Side {
         let columns = resolver.columns(variable).unwrap_or_else(|e| panic!("{e}"));
         for (name, leaf) in columns {
             let (kind, align) = match &image.types[leaf.ty as usize] {
-                TypeDesc::Elem(code) | TypeDesc::Enum { elem: code, .. } => {
+                TypeDesc::Elem(code) | TypeDesc::Enum { elem: code, .. } | TypeDesc::Subrange { elem: code, .. } => {
                     let elem = Elem::from_code(*code).unwrap_or_else(|| panic!("{name}: no elementary type"));
                     (Kind::Elem(elem), elem.bytes() as usize)
                 }

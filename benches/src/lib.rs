@@ -2,6 +2,7 @@
 //! `cargo bench`; see `report.rs`.
 
 pub mod charts;
+pub mod command;
 pub mod compile_time;
 pub mod interface;
 pub mod lanes;

@@ -8,7 +8,7 @@ use crate::image::{Image, TypeDesc};
 use crate::path::Resolver;
 use plcc_stdlib::chart_flags::{CHART, STEP};
 
-/// The flags of all charts.
+/// The flags of all charts of a resource.
 #[derive(Debug, Default)]
 pub struct Charts {
     /// Flags of charts.
@@ -18,8 +18,8 @@ pub struct Charts {
 }
 
 impl Charts {
-    /// Finds the flags.
-    pub fn new(image: &Image, resolver: &Resolver) -> Self {
+    /// Finds the flags in a part of the memory (first byte, length); their places count from its start.
+    pub fn new(image: &Image, resolver: &Resolver, (start, bytes): (u32, u32)) -> Self {
         let mut charts = Self::default();
         let step =
             |ty: &TypeDesc| matches!(ty, TypeDesc::Struct { fields, .. } if fields.iter().any(|f| f.name == STEP));
@@ -27,10 +27,11 @@ impl Charts {
             return charts;
         }
         for (name, leaf) in resolver.every_leaf().unwrap_or_default() {
+            let Some(at) = leaf.offset.checked_sub(start).filter(|at| *at < bytes) else { continue };
             if let Some(step) = name.strip_suffix(STEP).and_then(|step| step.strip_suffix('.')) {
-                charts.steps.push((leaf.offset as usize, step.to_string()));
+                charts.steps.push((at as usize, step.to_string()));
             } else if name.strip_suffix(CHART).is_some_and(|rest| rest.ends_with('$')) {
-                charts.raised.push(leaf.offset as usize);
+                charts.raised.push(at as usize);
             }
         }
         charts

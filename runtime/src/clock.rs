@@ -71,6 +71,18 @@ impl Clock {
         Clock::Real { grid: Grid::new(interval_ns, policy), start_ns: Some(start_ns) }
     }
 
+    /// The run has ended: how long it was, from the first release on, and how many releases have passed since the last
+    /// cycle. `None` in virtual time.
+    pub fn end(&self) -> Option<(i64, u64)> {
+        match self {
+            Clock::Real { grid, start_ns: Some(start_ns) } => {
+                let elapsed = (monotonic_ns() - start_ns).max(0);
+                Some((elapsed, grid.left_over(elapsed)))
+            }
+            _ => None,
+        }
+    }
+
     /// Waits for the release of a cycle (from 1). `stop` is asked after each wake-up; `None` then, and at the end of time.
     pub fn wait(&mut self, cycle: u64, mut stop: impl FnMut() -> bool) -> Option<Tick> {
         match self {

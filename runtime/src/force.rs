@@ -54,7 +54,8 @@ fn split_values(text: &str) -> Vec<String> {
             }
             None => open = Some(piece.to_string()),
         }
-        let whole = |item: &String| item.matches('\'').count() % 2 == 0 && item.matches('"').count() % 2 == 0;
+        let even = |item: &str, quote: char| item.matches(quote).count().is_multiple_of(2);
+        let whole = |item: &String| even(item, '\'') && even(item, '"');
         if open.as_ref().is_some_and(whole) {
             items.extend(open.take());
         }

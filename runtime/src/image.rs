@@ -88,6 +88,15 @@ pub struct Share {
 pub enum TypeDesc {
     /// An elementary type, by [`Elem::code`](plcc_stdlib::elem::Elem::code).
     Elem(u8),
+    /// A subrange of one: values from `low` to `high`.
+    Subrange {
+        /// The elementary type, by its code.
+        elem: u8,
+        /// Least value.
+        low: i128,
+        /// Greatest value.
+        high: i128,
+    },
     /// An enumeration.
     Enum {
         /// The elementary type of its values.

@@ -326,7 +326,7 @@ impl<'i> Resolver<'i> {
         let at = leaf.offset as usize;
         // Writing to a String does not fail.
         let _ = match self.image.types.get(leaf.ty as usize) {
-            Some(TypeDesc::Elem(code)) => {
+            Some(TypeDesc::Elem(code) | TypeDesc::Subrange { elem: code, .. }) => {
                 let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
                 value::write_scalar(out, elem, raw(mem, leaf, elem))
             }
@@ -357,10 +357,15 @@ impl<'i> Resolver<'i> {
     pub fn bytes(&self, leaf: &Leaf, text: &str) -> Result<Vec<u8>, String> {
         let text = text.trim();
         match self.image.types.get(leaf.ty as usize) {
-            Some(TypeDesc::Elem(code)) => {
+            Some(ty @ (TypeDesc::Elem(code) | TypeDesc::Subrange { elem: code, .. })) => {
                 let elem = Elem::from_code(*code).unwrap_or(Elem::Lword);
                 match Kind::Elem(elem).parse(text).map_err(|e| e.to_string())? {
-                    Value::Scalar { raw, .. } => Ok(raw.to_le_bytes()[..elem.bytes() as usize].to_vec()),
+                    Value::Scalar { raw, .. } => match ty {
+                        TypeDesc::Subrange { low, high, .. } if !(*low..=*high).contains(&elem.to_i128(raw)) => {
+                            Err(format!("`{text}` is outside {low}..{high}"))
+                        }
+                        _ => Ok(raw.to_le_bytes()[..elem.bytes() as usize].to_vec()),
+                    },
                     _ => Err(format!("`{text}` is no {}", elem.name())),
                 }
             }
@@ -479,6 +484,7 @@ mod tests {
 
     fn image() -> Image {
         let int = TypeDesc::Elem(Elem::Int.code());
+        let percent = TypeDesc::Subrange { elem: Elem::Int.code(), low: 0, high: 100 };
         let matrix = TypeDesc::Array { dims: vec![(1, 2), (0, 1)], elem: 0, stride: 2 };
         let field = |name: &str, offset, ty| Field { name: name.into(), offset, ty };
         let block = TypeDesc::Struct { name: "Fb".into(), fields: vec![field("m", 8, 1), field("n", 0, 0)] };
@@ -486,7 +492,7 @@ mod tests {
         Image {
             configuration: "Conf".into(),
             resources: vec![Resource { name: "Res".into(), ..Resource::default() }],
-            types: vec![int, matrix, block, TypeDesc::Elem(Elem::Bool.code())],
+            types: vec![int, matrix, block, TypeDesc::Elem(Elem::Bool.code()), percent],
             roots: vec![root("P1.fb", 64, 2, None), root("g", 100, 0, None), root("P1.lamp", 90, 3, Some(3))],
             ..Image::default()
         }
@@ -564,5 +570,8 @@ mod tests {
         assert_eq!((mem[90], r.text(&leaf, &mem).as_str()), (0xF8, "TRUE"));
         assert!(r.bytes(&r.leaf("g").unwrap(), "T#5s").is_err());
         assert_eq!(r.bytes(&r.leaf("g").unwrap(), "INT#-2"), Ok(vec![0xFE, 0xFF]));
+        let percent = Leaf { ty: 4, ..r.leaf("g").unwrap() };
+        assert_eq!(r.bytes(&percent, "100"), Ok(vec![100, 0]));
+        assert_eq!(r.bytes(&percent, "-1"), Err("`-1` is outside 0..100".into()));
     }
 }

@@ -24,11 +24,19 @@ pub fn parse(text: &str) -> Result<Request, String> {
     Ok(Request { priority, cpu: cpu.transpose()? })
 }
 
-/// Makes the process ready: memory stays in RAM. Once, before the threads of cycles are.
+/// Memory stays in RAM. Once, when all that a cycle uses is there.
 pub fn lock_memory() -> Result<(), String> {
-    // Pages are locked when they are touched: the large stacks of threads that never use them cost nothing.
+    // SAFETY: `limit` is valid for writing; without the call it stays 0.
+    let unlimited = unsafe {
+        let mut limit: libc::rlimit = std::mem::zeroed();
+        libc::getrlimit(libc::RLIMIT_MEMLOCK, &mut limit);
+        limit.rlim_cur == libc::RLIM_INFINITY
+    };
+    // Pages are locked when they are touched: the large stacks of threads that never use them cost nothing. With a limit
+    // memory that comes later is not locked, lest an allocation fail.
+    let future = if unlimited { libc::MCL_FUTURE } else { 0 };
     // SAFETY: the call takes flags only.
-    let done = unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_FUTURE | libc::MCL_ONFAULT) };
+    let done = unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_ONFAULT | future) };
     told(done, "lock its memory (mlockall; CAP_IPC_LOCK or LimitMEMLOCK=infinity)")
 }
 
@@ -62,6 +70,17 @@ pub fn enter(request: &Request, offset: i32, cpu: Option<usize>) -> Result<(), S
 pub fn precise_timers() {
     // SAFETY: sets a number of the calling thread.
     unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1) };
+}
+
+/// Page faults of the calling thread so far.
+pub fn page_faults() -> u64 {
+    // SAFETY: `usage` is valid for writing; without the call it stays 0.
+    let usage = unsafe {
+        let mut usage: libc::rusage = std::mem::zeroed();
+        libc::getrusage(libc::RUSAGE_THREAD, &mut usage);
+        usage
+    };
+    (usage.ru_minflt + usage.ru_majflt) as u64
 }
 
 /// Touches the pages of the stack that a cycle may use, so that none faults later.

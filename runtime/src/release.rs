@@ -55,6 +55,12 @@ impl Grid {
         self.next = number.checked_add(1)?;
         Some(Release { number, due_ns, skipped: skipped as u64, late })
     }
+
+    /// The run ends `passed_ns` after release 0: how many releases have passed that were neither executed nor counted.
+    pub fn left_over(&self, passed_ns: i64) -> u64 {
+        let passed = u64::try_from(passed_ns / self.interval_ns).map_or(0, |n| n + 1);
+        passed.saturating_sub(self.next)
+    }
 }
 
 #[cfg(test)]
@@ -119,6 +125,8 @@ mod tests {
                     assert_eq!(n as u64 + 1 + skipped, release.number + 1);
                 }
                 assert_eq!(skipped, expected_skipped);
+                // With what has passed at the end, executed and skipped make up all releases.
+                assert_eq!(RUNS as u64 + skipped + grid.left_over(now), (now / interval) as u64 + 1);
             }
         }
     }

@@ -64,9 +64,6 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(unwritable)?;
     let driver = io::open(flags.io.as_deref().or(image.defaults.io.as_deref()).unwrap_or("none"), image, &resolver)?;
     signals::install();
-    if flags.realtime.is_some() {
-        enter_realtime(image);
-    }
     let (retain, restored, writers) = open_retain(image, &resolver, flags)?;
     let mut mem = Region::new(image.region_bytes as usize);
     // Variables that the retain file does not know yet need their initial values even in a warm start.
@@ -102,6 +99,7 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
             schedule,
             stats: measured.then(|| Stats::new(image.tasks.len())),
             retain: writers.next().flatten(),
+            charts: Charts::new(image, &resolver, (resource.start, resource.bytes)),
             history: flags.history.map(|n| History::new(usize::from(n), resource.bytes as usize)),
             initial: initial.as_deref(),
             taken: Taken::new(resource),
@@ -112,6 +110,12 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     let interval_ns = workers.iter().map(|(_, ns)| *ns).reduce(crate::task::gcd).unwrap_or(1);
     let shared_retain = writers.next().flatten();
     let edges = Edges::new(image, driver, forces.unwrap_or_default());
+    if flags.realtime.is_some()
+        && let Err(e) = realtime::lock_memory()
+    {
+        eprintln!("{}: --realtime: {e}", image.name);
+    }
+    let report = |workers: &[(Worker, i64)]| print_now(image, &workers.iter().map(|(w, _)| w).collect::<Vec<_>>());
     // What is recorded needs one moment for all resources: then they run one after the other, as in virtual time.
     let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some();
     let (end, workers) = if image.resources.len() > 1 && !flags.virtual_time && !recorded {
@@ -136,14 +140,14 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
             vcd,
             interval_ns,
             retain: shared_retain,
-            charts: Charts::new(image, &resolver),
             cycles: flags.cycles,
-            report: Box::new(|workers| {
-                let workers: Vec<&Worker> = workers.iter().map(|(w, _)| w).collect();
-                print_now(image, &workers);
-            }),
+            page_faults: None,
+            report: &report,
         };
         let end = scan.run();
+        if let Some(stats) = scan.workers.first_mut().and_then(|(w, _)| w.stats.as_mut()) {
+            stats.page_faults = scan.page_faults;
+        }
         (end, scan.workers.into_iter().map(|(w, _)| w).collect())
     };
     let on_stdout = [trace_path, flags.vcd.as_deref()].contains(&Some(Path::new("-")));
@@ -174,13 +178,6 @@ fn open_retain(image: &Image, resolver: &Resolver, flags: &RunFlags) -> Result<K
             let Opened { retain, restored, writers } = Retain::open(path, image, resolver, flush)?;
             Ok((Some(retain), if flags.cold { Vec::new() } else { restored }, writers))
         }
-    }
-}
-
-/// Locks memory; what may not be is said once.
-fn enter_realtime(image: &Image) {
-    if let Err(e) = realtime::lock_memory() {
-        eprintln!("{}: --realtime: {e}", image.name);
     }
 }
 

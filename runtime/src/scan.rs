@@ -1,17 +1,23 @@
 //! The scan loop on one thread: all resources in order of declaration, and what is recorded of each cycle.
 
-use crate::charts::Charts;
 use crate::clock::{Clock, Tick};
 use crate::edges::Edges;
 use crate::engine::{Part, Region};
 use crate::image::Image;
 use crate::path::Resolver;
+use crate::realtime;
 use crate::retain::Writer;
 use crate::signals;
 use crate::stimulus::Stimulus;
 use crate::trace::Trace;
 use crate::vcd::Vcd;
 use crate::worker::{Halt, Meeting, Worker};
+
+/// Cycles before this one touch what they touch for the first time.
+const WARM_FROM: u64 = 17;
+
+/// Tells the statistics of workers.
+pub type Report<'r> = dyn Fn(&[(Worker, i64)]) + 'r;
 
 /// Everything a run works on.
 pub struct Scan<'a> {
@@ -28,11 +34,12 @@ pub struct Scan<'a> {
     pub interval_ns: i64,
     /// Of what resources share.
     pub retain: Option<Writer>,
-    pub charts: Charts,
     /// Cycles to run; `None` is without end.
     pub cycles: Option<u64>,
+    /// Page faults of this thread in cycles behind the first ones.
+    pub page_faults: Option<u64>,
     /// Tells the statistics, when somebody asked for them.
-    pub report: Box<dyn FnMut(&[(Worker, i64)]) + 'a>,
+    pub report: &'a Report<'a>,
 }
 
 /// How a run ended.
@@ -62,6 +69,13 @@ impl Scan<'_> {
     /// Runs cycles until one of the ends.
     pub fn run(&mut self) -> End {
         let end = self.cycles();
+        if let Some((elapsed_ns, ticks)) = self.clock.end() {
+            for (worker, _) in &mut self.workers {
+                worker.end(elapsed_ns, ticks);
+            }
+        }
+        // Until here the number is that of before the first counted cycle.
+        self.page_faults = self.page_faults.map(|before| realtime::page_faults() - before);
         match (self.flush(), end) {
             (Err(e), End::Stopped) => End::Failed(e),
             (Err(e), End::Fault(told)) if !e.is_empty() => End::Failed(format!("{told}{e}")),
@@ -81,6 +95,9 @@ impl Scan<'_> {
             }) else {
                 break;
             };
+            if cycle == WARM_FROM {
+                self.page_faults = Some(realtime::page_faults());
+            }
             if let Some(stimulus) = &mut self.stimulus {
                 stimulus.apply(cycle, self.mem.as_mut_slice());
             }
@@ -89,10 +106,6 @@ impl Scan<'_> {
                     Halt::Fault(told) => End::Fault(told),
                     Halt::Driver(told) => End::Failed(told),
                 };
-            }
-            let news = self.charts.check(cycle, self.mem.as_mut_slice());
-            if !news.is_empty() {
-                eprint!("{news}");
             }
             if let Err(e) = self.record(cycle, tick) {
                 return End::Failed(e);
@@ -121,7 +134,7 @@ impl Scan<'_> {
             };
             let mut alone = Alone { edges, home };
             worker.tick(cycle, tick, &mut part, &mut alone)?;
-            worker.finish_cycle(cycle, &part);
+            worker.finish_cycle(cycle, &mut part);
         }
         let first = &image.resources[0];
         let end = if several {

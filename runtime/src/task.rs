@@ -93,6 +93,20 @@ impl Schedule {
         &self.counts
     }
 
+    /// The run has ended after so long, and so many base ticks have passed that were not executed: releases of every task
+    /// that nothing has counted yet were skipped.
+    pub fn end(&mut self, elapsed_ns: i64, ticks: u64) {
+        for (n, counts) in self.counts.iter_mut().enumerate() {
+            match (self.intervals[n], &self.events[n]) {
+                (Some(interval), None) if elapsed_ns >= self.due[n] => {
+                    counts.skipped += ((elapsed_ns - self.due[n]) / interval) as u64 + 1;
+                }
+                (None, None) => counts.skipped += ticks,
+                _ => {}
+            }
+        }
+    }
+
     /// Calls `run` for each task that is due in a tick, in order; stops at the first error.
     pub fn release<E>(&mut self, tick: Tick, mut run: impl FnMut(usize) -> Result<(), E>) -> Result<(), E> {
         for n in &self.order {

@@ -13,8 +13,7 @@ use crate::scan::End;
 use crate::signals;
 use crate::worker::{Halt, Meeting, Worker};
 use std::cell::UnsafeCell;
-use std::sync::Mutex;
-use std::sync::PoisonError;
+use std::sync::{Mutex, Once, PoisonError};
 
 /// Threads have started by then.
 const LEAD_IN_NS: i64 = 20_000_000;
@@ -100,7 +99,7 @@ pub fn run<'a>(threads: Threads<'a, '_, '_>) -> (End, Vec<Worker<'a>>) {
     let shared = InheritingLock::new(Shared { edges, home });
     let retain = InheritingLock::new(retain);
     let halted: Mutex<Option<Halt>> = Mutex::new(None);
-    let refused: Mutex<Option<String>> = Mutex::new(None);
+    let refused = Once::new();
     let start_ns = monotonic_ns() + LEAD_IN_NS;
     let workers = std::thread::scope(|scope| {
         let (shared, retain, halted, refused) = (&shared, &retain, &halted, &refused);
@@ -113,10 +112,13 @@ pub fn run<'a>(threads: Threads<'a, '_, '_>) -> (End, Vec<Worker<'a>>) {
                     if let Some(request) = &realtime
                         && let Err(e) = realtime::enter(request, 0, request.cpu.map(|c| c + worker.resource))
                     {
-                        refused.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(e);
+                        refused.call_once(|| eprintln!("--realtime: {e}; it runs with normal scheduling"));
                     }
                     let mut clock = Clock::on_grid(interval_ns, policy, start_ns);
                     let done = cycles(&mut worker, &mut part, shared, retain, &mut clock, until_ns, report);
+                    if let Some((elapsed_ns, ticks)) = clock.end() {
+                        worker.end(elapsed_ns, ticks);
+                    }
                     if let Err(halt) = done {
                         halted.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(halt);
                         // All resources stop (semantics.md [E4]).
@@ -129,9 +131,6 @@ pub fn run<'a>(threads: Threads<'a, '_, '_>) -> (End, Vec<Worker<'a>>) {
         let workers: Vec<Worker> = handles.into_iter().filter_map(|h| h.join().ok()).collect();
         workers
     });
-    if let Some(e) = refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        eprintln!("--realtime: {e}; it ran with normal scheduling");
-    }
     let end = match halted.into_inner().unwrap_or_else(PoisonError::into_inner) {
         None => End::Stopped,
         Some(Halt::Fault(told)) => End::Fault(told),

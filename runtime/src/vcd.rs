@@ -51,7 +51,9 @@ impl Vcd {
         let mut signals = Vec::with_capacity(columns.len());
         for (n, (name, leaf)) in columns.into_iter().enumerate() {
             let elem = match image.types.get(leaf.ty as usize) {
-                Some(TypeDesc::Elem(code) | TypeDesc::Enum { elem: code, .. }) => Elem::from_code(*code),
+                Some(
+                    TypeDesc::Elem(code) | TypeDesc::Enum { elem: code, .. } | TypeDesc::Subrange { elem: code, .. },
+                ) => Elem::from_code(*code),
                 Some(TypeDesc::String { .. }) => None,
                 _ => Some(Elem::Dword),
             };

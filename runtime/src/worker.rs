@@ -1,5 +1,6 @@
 //! One resource at work: which of its tasks run in a tick, and what happens around each execution.
 
+use crate::charts::Charts;
 use crate::clock::{Tick, monotonic_ns};
 use crate::edges::{Edges, Taken};
 use crate::engine::{Engine, Part};
@@ -32,6 +33,7 @@ pub struct Worker<'a> {
     pub stats: Option<Stats>,
     pub retain: Option<Writer>,
     pub history: Option<History>,
+    pub charts: Charts,
     /// The whole memory after a cold start, for tasks that start again after a fault.
     pub initial: Option<&'a [u8]>,
     pub taken: Taken,
@@ -105,7 +107,7 @@ impl Worker<'_> {
                 let told = fault::describe(image, part, status, task, cycle);
                 let last = if restarts[n] == TOLD_RESTARTS { "; further ones are not told" } else { "" };
                 let told = with_history(told, history.as_ref(), image, resolver, part, cycle);
-                eprint!("{told}  the task starts again{last}\n");
+                eprintln!("{told}  the task starts again{last}");
             }
             for (start, bytes) in &image.tasks[task].programs {
                 let source = &initial[*start as usize..][..*bytes as usize];
@@ -121,8 +123,20 @@ impl Worker<'_> {
         })
     }
 
+    /// The run has ended.
+    pub fn end(&mut self, elapsed_ns: i64, ticks: u64) {
+        self.schedule.end(elapsed_ns, ticks);
+        if let Some(stats) = &mut self.stats {
+            stats.elapsed_ns = Some(elapsed_ns);
+        }
+    }
+
     /// A tick has ended without a fault.
-    pub fn finish_cycle(&mut self, cycle: u64, part: &Part) {
+    pub fn finish_cycle(&mut self, cycle: u64, part: &mut Part) {
+        let news = self.charts.check(cycle, part.as_mut_slice());
+        if !news.is_empty() {
+            eprint!("{news}");
+        }
         if let Some(retain) = &mut self.retain {
             retain.capture(part.start(), part.as_slice());
         }

@@ -10,25 +10,20 @@ struct Variable {
     value: u32,
 }
 
-/// Types, and a value as a literal and as traces show it.
-const TYPES: [(&str, fn(u32) -> (String, String)); 8] = [
-    ("BOOL", |n| bool_text(n % 2 == 1)),
-    ("SINT", |n| same(format!("{}", n % 120 + 1))),
-    ("INT", |n| same(format!("{}", n % 30_000 + 1))),
-    ("UDINT", |n| same(format!("{}", n + 1))),
-    ("LREAL", |n| same(format!("{}.5", n + 1))),
-    ("STRING[6]", |n| same(format!("'s{}'", n % 90_000))),
-    ("Color", |n| same(["Red", "Green", "Blue"][n as usize % 3].to_string())),
-    ("TIME", |n| same(format!("T#{}ms", n % 900 + 1))),
+/// The text of a value, as a literal and in traces.
+type Text = fn(u32) -> String;
+
+/// Types with a value for each number.
+const TYPES: [(&str, Text); 8] = [
+    ("BOOL", |n| if n % 2 == 1 { "TRUE".into() } else { "FALSE".into() }),
+    ("SINT", |n| format!("{}", n % 120 + 1)),
+    ("INT", |n| format!("{}", n % 30_000 + 1)),
+    ("UDINT", |n| format!("{}", n + 1)),
+    ("LREAL", |n| format!("{}.5", n + 1)),
+    ("STRING[6]", |n| format!("'s{}'", n % 90_000)),
+    ("Color", |n| ["Red", "Green", "Blue"][n as usize % 3].to_string()),
+    ("TIME", |n| format!("T#{}ms", n % 900 + 1)),
 ];
-
-fn same(text: String) -> (String, String) {
-    (text.clone(), text)
-}
-
-fn bool_text(value: bool) -> (String, String) {
-    same(if value { "TRUE".into() } else { "FALSE".into() })
-}
 
 type Program = BTreeMap<String, Variable>;
 
@@ -122,7 +117,7 @@ fn no_value_comes_to_a_wrong_variable() {
         // All values come from outside, so that every variable can have one.
         plant.write("a.st", &source(&program, &mut random));
         let forces: Vec<String> =
-            program.iter().map(|(name, v)| format!("{}={}", path_of(name), TYPES[v.ty].1(v.value).0)).collect();
+            program.iter().map(|(name, v)| format!("{}={}", path_of(name), TYPES[v.ty].1(v.value))).collect();
         let run = |file: &str, more: &[&str]| {
             let args = ["run", file, "--engine", "interp", "--virtual-time", "--cycles", "1", "--retain", "r"];
             let done = plant.plcc(&[&args[..], more].concat());
@@ -145,7 +140,7 @@ fn no_value_comes_to_a_wrong_variable() {
         for ((name, variable), value) in edited.iter().zip(values) {
             let kept = program.get(name).filter(|before| before.ty == variable.ty);
             let expected = match kept {
-                Some(before) => TYPES[before.ty].1(before.value).1,
+                Some(before) => TYPES[before.ty].1(before.value),
                 None => initial(variable.ty, first_color),
             };
             assert_eq!(value, expected, "seed {seed}: {name}\n{}\n{text}", plant.read("a.st"));

@@ -82,6 +82,17 @@ fn retained_values_are_shown_and_compared() {
     ] {
         assert!(diff.stdout.contains(line), "{line} {} {}", diff.stdout, diff.stderr);
     }
+    // A subrange keeps what it can hold.
+    let percent = |low: &str| format!("PROGRAM Main\nVAR RETAIN p : INT ({low}..100) := 50; END_VAR\nEND_PROGRAM\n");
+    plant.write("wide.st", &percent("0"));
+    plant.write("narrow.st", &percent("40"));
+    let force = ["run", "wide.st", "--virtual-time", "--cycles", "1", "--retain", "p", "--force"];
+    assert_eq!(plant.plcc(&[&force[..], &["Main.p=30"]].concat()).code, 0);
+    assert_eq!(plant.plcc(&[&force[..], &["Main.p=101"]].concat()).code, 2);
+    let diff = plant.plcc(&["retain", "diff", "p", "narrow.st"]);
+    assert_eq!(diff.stdout, "dropped  Main.p := 30; there is no such value now\nkept     0 of 1 variables\n");
+    let narrow = ["run", "narrow.st", "--virtual-time", "--cycles", "1", "--retain", "p", "--watch", "Main.p"];
+    assert_eq!(plant.plcc(&narrow).stdout, "cycle,Main.p\n1,50\n");
     let wrong = plant.plcc(&["retain", "show", "m.st"]);
     assert!(wrong.code == 3 && wrong.stderr.contains("no retain file"), "{}", wrong.stderr);
     assert_eq!(plant.plcc(&["retain", "show", "nothing"]).code, 3);

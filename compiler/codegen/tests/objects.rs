@@ -135,8 +135,10 @@ fn embedded_in_a_c_program() {
         object::compile(&program, ObjectOptions { vars: Some(&vars), ..Default::default() }).expect("an object");
     let folder = Folder::new("embed");
     folder.write("app.o", &bytes);
-    folder
-        .write("app.h", header::header("my app", program.region_bytes, &["fast", "slow"], &program.retain).as_bytes());
+    folder.write(
+        "app.h",
+        header::header("my app", program.region_bytes, &["fast", "slow"], &program.retain, &[]).as_bytes(),
+    );
     folder.write("host.c", HOST.as_bytes());
     let flags = ["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror", "host.c", "app.o", "-o", "host", "-lm"];
     let Some(built) = folder.run("cc", &flags) else { return eprintln!("no C compiler: skipped") };

@@ -5,8 +5,10 @@ use crate::failure::Failure;
 use crate::pipeline::{self, Compiled, Parsed};
 use crate::project::Project;
 use crate::{link, nothing_to_run, report};
+use plcc_codegen::header;
 use plcc_codegen::object::{self, ObjectOptions};
 use plcc_diag::bug;
+use plcc_runtime::image::Image;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -135,6 +137,22 @@ fn write_header(compiled: &Compiled, path: &Path) -> Result<(), Failure> {
     let header_path = with_suffix(path, "h");
     let name = header_path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let tasks: Vec<&str> = compiled.image.tasks.iter().map(|t| t.name.as_str()).collect();
-    let text = plcc_codegen::header::header(&name, compiled.program.region_bytes, &tasks, &compiled.program.retain);
+    let text = header::header(
+        &name,
+        compiled.program.region_bytes,
+        &tasks,
+        &compiled.program.retain,
+        &resources(&compiled.image),
+    );
     link::write_file(&header_path, text.as_bytes())
+}
+
+fn resources(image: &Image) -> Vec<header::Resource> {
+    let resource = |(n, r): (usize, &plcc_runtime::image::Resource)| header::Resource {
+        name: r.name.clone(),
+        start: r.start,
+        tasks: image.tasks_of(n).len() as u32,
+        shares: r.shares.iter().map(|s| [s.home, s.local, s.bytes, s.unit]).collect(),
+    };
+    image.resources.iter().enumerate().map(resource).collect()
 }

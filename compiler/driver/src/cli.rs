@@ -35,7 +35,7 @@ pub enum Command {
     /// Compile to a native executable, or print a stage.
     Build(BuildArgs),
     /// Compile and run at once.
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// Measure cycle times: native code beside the interpreter.
     Bench(BenchArgs),
     /// Find mistakes and explain them.

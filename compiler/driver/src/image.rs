@@ -146,7 +146,7 @@ pub fn variables(image: &Image) -> Vec<TableVar> {
         .into_iter()
         .map(|(path, leaf)| {
             let (size, ty) = match &image.types[leaf.ty as usize] {
-                TypeDesc::Elem(code) | TypeDesc::Enum { elem: code, .. } => {
+                TypeDesc::Elem(code) | TypeDesc::Enum { elem: code, .. } | TypeDesc::Subrange { elem: code, .. } => {
                     (Elem::from_code(*code).map_or(0, Elem::bytes), u16::from(*code))
                 }
                 TypeDesc::String { wide, capacity } => {
@@ -312,7 +312,10 @@ impl Builder<'_> {
             return *index;
         }
         let desc = match self.defs.types.get(id).clone() {
-            Type::Elem(elem) | Type::Subrange { base: elem, .. } => TypeDesc::Elem(elem.code()),
+            Type::Elem(elem) => TypeDesc::Elem(elem.code()),
+            Type::Subrange { base, low, high } => {
+                TypeDesc::Subrange { elem: base.code(), low: low.into(), high: high.into() }
+            }
             Type::Enum(id) => {
                 let def = &self.defs.enums[id];
                 let values = def.values.iter().map(|(n, v, _)| (n.to_string(), *v as i64)).collect();

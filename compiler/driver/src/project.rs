@@ -30,14 +30,14 @@ pub struct Project {
     /// What the program does where no flag says it: `[runtime]`, `[io] driver`, `[retain] flush`.
     pub defaults: Defaults,
     /// `[runtime]` watchdog and deadline of all tasks.
-    all_tasks: TaskTimes,
+    pub all_tasks: TaskTimes,
     /// `[runtime.tasks.NAME]`.
-    by_task: Vec<(String, TaskTimes)>,
+    pub by_task: Vec<(String, TaskTimes)>,
 }
 
 /// Longest execution and reaction time of a task, nanoseconds.
 #[derive(Debug, Clone, Copy, Default)]
-struct TaskTimes {
+pub struct TaskTimes {
     watchdog_ns: Option<i64>,
     deadline_ns: Option<i64>,
 }

@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn each_kind_of_value_has_its_lane() {
-        let text = "cycle,go,A.X,n,mode\n3,FALSE,TRUE,1,Idle\n4,TRUE,TRUE,-2.5,Idle\n5,TRUE,FALSE,4,Run<\n";
+        let text = "cycle,go,A.X,n,mode\n3,FALSE,TRUE,1,Idle\n4,TRUE,TRUE,-2,Idle\n5,TRUE,FALSE,4,Run<\n";
         let (cycles, lanes) = read(text.as_bytes()).unwrap();
         assert_eq!(cycles, [3, 4, 5]);
         let forms: Vec<Form> = lanes.iter().map(Lane::form).collect();
@@ -275,7 +275,7 @@ mod tests {
         assert!(svg.contains("d=\"M190.0 64 L218.0 64 L218.0 38 L274.0 38\""), "{svg}");
         assert_eq!(svg.matches("class=\"step\"").count(), 1);
         assert_eq!(svg.matches("class=\"word\"").count(), 2);
-        assert!(svg.contains("Run&lt;") && svg.contains(">-2.5</text>"));
+        assert!(svg.contains("Run&lt;") && svg.contains(">-2</text>"));
         assert_eq!(svg.matches("class=\"grid\"").count(), 3);
     }
 

@@ -22,6 +22,8 @@ struct Outputs {
     image: Image,
     out: BufWriter<Box<dyn Write + Send>>,
     line: String,
+    /// One value before it is quoted; both keep their memory.
+    cell: String,
 }
 
 impl Csv {
@@ -53,6 +55,7 @@ impl Csv {
                         trace::create(Path::new(path), "outputs").map_err(|e| (3, e))?,
                     ),
                     line: "cycle".into(),
+                    cell: String::new(),
                 };
                 for (name, _) in &columns {
                     out.line.push(',');
@@ -94,12 +97,11 @@ impl Outputs {
         // Writing to a String does not fail.
         let _ = write!(self.line, "{cycle}");
         let resolver = Resolver::types_only(&self.image);
-        let mut cell = String::new();
         for leaf in &self.columns {
             self.line.push(',');
-            cell.clear();
-            resolver.write(leaf, outputs, &mut cell);
-            trace::field(&mut self.line, &cell);
+            self.cell.clear();
+            resolver.write(leaf, outputs, &mut self.cell);
+            trace::field(&mut self.line, &self.cell);
         }
         self.end_line()
     }

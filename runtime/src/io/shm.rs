@@ -175,7 +175,7 @@ impl IoDriver for Shm {
         let mut fresh = std::mem::take(&mut self.fresh);
         for _ in 0..TRIES {
             let before = self.word(block.at).load(Ordering::Acquire);
-            if before % 2 == 0 {
+            if before.is_multiple_of(2) {
                 self.copy_out(block.at + BLOCK_HEAD_BYTES, &mut fresh);
                 fence(Ordering::Acquire);
                 if self.word(block.at).load(Ordering::Relaxed) == before {

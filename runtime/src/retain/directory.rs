@@ -52,6 +52,11 @@ pub struct Entry {
 pub enum Kind {
     /// By its code.
     Elem(u8),
+    Subrange {
+        elem: u8,
+        low: i128,
+        high: i128,
+    },
     Enum {
         elem: u8,
         values: Vec<(String, i64)>,
@@ -76,7 +81,9 @@ pub struct Restored {
 impl Kind {
     pub fn bytes(&self) -> u32 {
         match self {
-            Kind::Elem(code) | Kind::Enum { elem: code, .. } => Elem::from_code(*code).map_or(0, Elem::bytes),
+            Kind::Elem(code) | Kind::Enum { elem: code, .. } | Kind::Subrange { elem: code, .. } => {
+                Elem::from_code(*code).map_or(0, Elem::bytes)
+            }
             Kind::String { wide: false, capacity } => capacity.saturating_add(1),
             Kind::String { wide: true, capacity } => capacity.saturating_add(1).saturating_mul(2),
         }
@@ -86,6 +93,7 @@ impl Kind {
     pub fn text(&self) -> String {
         match self {
             Kind::Elem(code) => Elem::from_code(*code).map_or("?".into(), |e| e.name().to_string()),
+            Kind::Subrange { elem, low, high } => format!("{} ({low}..{high})", Kind::Elem(*elem).text()),
             Kind::Enum { values, .. } => {
                 format!("({})", values.iter().map(|(n, _)| n.as_str()).collect::<Vec<_>>().join(", "))
             }
@@ -96,6 +104,7 @@ impl Kind {
     pub fn desc(&self) -> TypeDesc {
         match self.clone() {
             Kind::Elem(code) => TypeDesc::Elem(code),
+            Kind::Subrange { elem, low, high } => TypeDesc::Subrange { elem, low, high },
             Kind::Enum { elem, values } => TypeDesc::Enum { elem, values },
             Kind::String { wide, capacity } => TypeDesc::String { wide, capacity },
         }
@@ -198,6 +207,7 @@ impl Directory {
 fn kind(image: &Image, ty: u32) -> Option<Kind> {
     match image.types.get(ty as usize)? {
         TypeDesc::Elem(code) => Some(Kind::Elem(*code)),
+        TypeDesc::Subrange { elem, low, high } => Some(Kind::Subrange { elem: *elem, low: *low, high: *high }),
         TypeDesc::Enum { elem, values } => Some(Kind::Enum { elem: *elem, values: values.clone() }),
         TypeDesc::String { wide, capacity } => Some(Kind::String { wide: *wide, capacity: *capacity }),
         _ => None,
@@ -211,7 +221,7 @@ pub enum Fate {
     Kept(Vec<u8>),
     /// The file has the name with another type, which it says.
     OtherType(String),
-    /// An enumeration that has no value of the old name any more.
+    /// An enumeration that has no value of the old name any more, or a subrange that does not hold the value.
     ValueGone(String),
     /// The file does not have it.
     New,
@@ -234,7 +244,25 @@ pub fn fates(old: &Old, directory: &Directory) -> (Vec<Fate>, Vec<usize>) {
 
 fn convert(before: &Kind, bit: Option<u8>, value: &[u8], now: &Kind) -> Fate {
     let other = || Fate::OtherType(before.text());
-    match (before, now) {
+    // A subrange has the type of its base; what lies outside of it now has no place.
+    let base = |kind: &Kind| match kind {
+        Kind::Subrange { elem, .. } => Kind::Elem(*elem),
+        other => other.clone(),
+    };
+    if let Kind::Subrange { elem, low, high } = now
+        && base(before) == Kind::Elem(*elem)
+        && let Some(elem) = Elem::from_code(*elem)
+    {
+        let mut raw = [0; 8];
+        raw[..value.len().min(8)].copy_from_slice(&value[..value.len().min(8)]);
+        let number = elem.to_i128(u64::from_le_bytes(raw));
+        return if (*low..=*high).contains(&number) {
+            Fate::Kept(value.to_vec())
+        } else {
+            Fate::ValueGone(number.to_string())
+        };
+    }
+    match (&base(before), now) {
         (Kind::Elem(a), Kind::Elem(b)) if a == b => match (Elem::from_code(*a), bit) {
             (Some(Elem::Bool), Some(bit)) => Fate::Kept(vec![value.first().map_or(0, |v| v >> bit & 1)]),
             (Some(Elem::Bool), None) => Fate::Kept(vec![u8::from(value.first().is_some_and(|v| *v != 0))]),

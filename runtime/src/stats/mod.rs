@@ -31,6 +31,10 @@ pub struct Execution {
 #[derive(Debug)]
 pub struct Stats {
     tasks: Vec<TaskStats>,
+    /// Page faults in cycles behind the first ones; `None` where nobody counted.
+    pub page_faults: Option<u64>,
+    /// How long the run was, from the first release on; `None` in virtual time and while it runs.
+    pub elapsed_ns: Option<i64>,
 }
 
 #[derive(Debug)]
@@ -74,7 +78,7 @@ impl Reaction {
 impl Stats {
     /// Empty.
     pub fn new(tasks: usize) -> Self {
-        Self { tasks: (0..tasks).map(|_| TaskStats::new()).collect() }
+        Self { tasks: (0..tasks).map(|_| TaskStats::new()).collect(), page_faults: None, elapsed_ns: None }
     }
 
     /// One execution.
@@ -86,6 +90,7 @@ impl Stats {
 
     /// Takes over what another one, of other tasks, has.
     pub fn merge(&mut self, other: Stats) {
+        self.elapsed_ns = self.elapsed_ns.max(other.elapsed_ns);
         for (own, other) in self.tasks.iter_mut().zip(other.tasks) {
             if !other.execution.is_empty() {
                 *own = other;
@@ -115,7 +120,7 @@ impl Stats {
                 reaction: self.reaction(n, image.tasks[n].deadline_ns),
             })
             .collect();
-        if json { as_json(&rows) } else { as_text(&rows) }
+        if json { self.as_json(&rows) } else { self.as_text(&rows) }
     }
 
     /// The histograms as a drawing.
@@ -133,8 +138,9 @@ struct Row<'s> {
     reaction: Reaction,
 }
 
-fn as_json(rows: &[Row]) -> String {
-    let rows = rows.iter().map(|Row { name, stats, counts, reaction }| {
+impl Stats {
+    fn as_json(&self, rows: &[Row]) -> String {
+        let rows = rows.iter().map(|Row { name, stats, counts, reaction }| {
         let deadline = reaction.deadline_ns.map_or("null".into(), |ns| ns.to_string());
         format!(
             "{{\"task\":{name},\"cycles\":{},\"overruns\":{},\"skipped\":{},{},\"wake_up\":{{{}}},\"period\":{{{}}},\
@@ -154,50 +160,60 @@ fn as_json(rows: &[Row]) -> String {
             name = quoted(name),
         )
     });
-    format!("{{\"tasks\":[{}]}}\n", rows.collect::<Vec<_>>().join(","))
-}
-
-fn as_text(rows: &[Row]) -> String {
-    let width = rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(14) + 2;
-    let mut out = String::new();
-    // Writing to a String does not fail.
-    let _ = write!(out, "{:<width$}{:>12}", "task [ns]", "cycles");
-    for name in ["min", "mean", "p50", "p99", "p99.9", "max", "overruns", "skipped"] {
-        let _ = write!(out, "{name:>12}");
+        let page_faults = self.page_faults.map_or("null".into(), |n| n.to_string());
+        let elapsed = self.elapsed_ns.map_or("null".into(), |n| n.to_string());
+        let rows = rows.collect::<Vec<_>>().join(",");
+        format!("{{\"tasks\":[{rows}],\"page_faults\":{page_faults},\"elapsed_ns\":{elapsed}}}\n")
     }
-    out.push('\n');
-    for Row { name, stats, counts, .. } in rows {
-        let _ = write!(out, "{name:<width$}{:>12}", counts.executed);
-        for (_, value) in values(&stats.execution) {
-            let _ = write!(out, "{value:>12}");
+
+    fn as_text(&self, rows: &[Row]) -> String {
+        let width = rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(14) + 2;
+        let mut out = String::new();
+        // Writing to a String does not fail.
+        let _ = write!(out, "{:<width$}{:>12}", "task [ns]", "cycles");
+        for name in ["min", "mean", "p50", "p99", "p99.9", "max", "overruns", "skipped"] {
+            let _ = write!(out, "{name:>12}");
         }
-        let _ = writeln!(out, "{:>12}{:>12}", counts.overruns, counts.skipped);
-        for (what, histogram) in MEASURES.iter().zip(stats.histograms()).skip(1) {
-            if histogram.is_empty() {
-                continue;
-            }
-            let _ = write!(out, "{:<width$}{:>12}", format!("  {what}"), histogram.len());
-            for (_, value) in values(histogram) {
+        out.push('\n');
+        for Row { name, stats, counts, .. } in rows {
+            let _ = write!(out, "{name:<width$}{:>12}", counts.executed);
+            for (_, value) in values(&stats.execution) {
                 let _ = write!(out, "{value:>12}");
+            }
+            let _ = writeln!(out, "{:>12}{:>12}", counts.overruns, counts.skipped);
+            for (what, histogram) in MEASURES.iter().zip(stats.histograms()).skip(1) {
+                if histogram.is_empty() {
+                    continue;
+                }
+                let _ = write!(out, "{:<width$}{:>12}", format!("  {what}"), histogram.len());
+                for (_, value) in values(histogram) {
+                    let _ = write!(out, "{value:>12}");
+                }
+                out.push('\n');
+            }
+        }
+        for Row { name, reaction, .. } in rows {
+            let _ = write!(
+                out,
+                "reaction time of {name}: worst {} = 2 x {} + {} (longest cycle, release delay), longest seen {}",
+                reaction.worst_ns(),
+                reaction.max_cycle_ns,
+                reaction.release_delay_ns,
+                reaction.observed_ns
+            );
+            if let Some(deadline) = reaction.deadline_ns {
+                let _ = write!(out, "; deadline {deadline}: {}", if reaction.missed() { "MISSED" } else { "kept" });
             }
             out.push('\n');
         }
-    }
-    for Row { name, reaction, .. } in rows {
-        let _ = write!(
-            out,
-            "reaction time of {name}: worst {} = 2 x {} + {} (longest cycle, release delay), longest seen {}",
-            reaction.worst_ns(),
-            reaction.max_cycle_ns,
-            reaction.release_delay_ns,
-            reaction.observed_ns
-        );
-        if let Some(deadline) = reaction.deadline_ns {
-            let _ = write!(out, "; deadline {deadline}: {}", if reaction.missed() { "MISSED" } else { "kept" });
+        if let Some(page_faults) = self.page_faults {
+            let _ = writeln!(out, "page faults in cycles: {page_faults}");
         }
-        out.push('\n');
+        if let Some(elapsed) = self.elapsed_ns {
+            let _ = writeln!(out, "elapsed since the first release: {elapsed}");
+        }
+        out
     }
-    out
 }
 
 impl TaskStats {
@@ -276,7 +292,10 @@ fn values(h: &Histogram<u64>) -> [(&'static str, u64); 6] {
 }
 
 fn json_values(h: &Histogram<u64>) -> String {
-    values(h).map(|(name, value)| format!("\"{name}\":{value}")).join(",")
+    let values = values(h).map(|(name, value)| format!("\"{name}\":{value}")).join(",");
+    let counts: Vec<String> =
+        h.iter_recorded().map(|v| format!("[{},{}]", v.value_iterated_to(), v.count_at_value())).collect();
+    format!("{values},\"histogram\":[{}]", counts.join(","))
 }
 
 /// A JSON string; names are IEC identifiers and dots.
@@ -311,10 +330,12 @@ mod tests {
         assert_eq!(
             stats().report(&image, 0..1, &counts, true),
             "{\"tasks\":[{\"task\":\"Fast\",\"cycles\":3,\"overruns\":4,\"skipped\":5,\"min_ns\":100,\"mean_ns\":200,\
-             \"p50_ns\":200,\"p99_ns\":300,\"p99_9_ns\":300,\"max_ns\":300,\"wake_up\":{\"min_ns\":50,\"mean_ns\":50,\
-             \"p50_ns\":50,\"p99_ns\":50,\"p99_9_ns\":50,\"max_ns\":50},\"period\":{\"min_ns\":1000,\"mean_ns\":1000,\
-             \"p50_ns\":1000,\"p99_ns\":1000,\"p99_9_ns\":1000,\"max_ns\":1000},\"reaction\":{\"max_cycle_ns\":300,\
-             \"release_delay_ns\":900,\"worst_ns\":1500,\"observed_ns\":1300,\"deadline_ns\":1500,\"missed\":false}}]}\n"
+             \"p50_ns\":200,\"p99_ns\":300,\"p99_9_ns\":300,\"max_ns\":300,\"histogram\":[[100,1],[200,1],[300,1]],\
+             \"wake_up\":{\"min_ns\":50,\"mean_ns\":50,\"p50_ns\":50,\"p99_ns\":50,\"p99_9_ns\":50,\"max_ns\":50,\
+             \"histogram\":[[50,3]]},\"period\":{\"min_ns\":1000,\"mean_ns\":1000,\"p50_ns\":1000,\"p99_ns\":1000,\
+             \"p99_9_ns\":1000,\"max_ns\":1000,\"histogram\":[[1000,2]]},\"reaction\":{\"max_cycle_ns\":300,\
+             \"release_delay_ns\":900,\"worst_ns\":1500,\"observed_ns\":1300,\"deadline_ns\":1500,\"missed\":false}}],\
+             \"page_faults\":null,\"elapsed_ns\":null}\n"
         );
         let text = stats().report(&image, 0..1, &counts, false);
         let words: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().collect();

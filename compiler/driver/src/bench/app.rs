@@ -48,8 +48,7 @@ impl Front {
     pub fn new(texts: &[(&str, &str)], profile: Profile) -> Result<Self, String> {
         let mut sources = SourceMap::new();
         let ids: Vec<_> = texts.iter().map(|(name, text)| (sources.add(*name, *text), profile)).collect();
-        let mut project = Project::default();
-        project.name = "bench".into();
+        let project = Project { name: "bench".into(), ..Project::default() };
         let front = Self::check(sources, &ids, project);
         if front.parsed.diags.has_errors() {
             let list = front.parsed.diags.sorted();

@@ -176,6 +176,9 @@ impl Bench {
         let none = front.back(&code(OptArg::None), false)?;
         let unchecked = front.back(&CodeArgs { checks: Some("none".into()), opt: Some(OptArg::Speed) }, false)?;
         let image = speed.compiled.image.clone();
+        if image.resources.len() > 1 {
+            return Err(Failure::usage("plcc bench measures an application of one RESOURCE"));
+        }
         let resolver = Resolver::new(&image);
         let stimulus = args.stimulus.as_deref().map(|path| Stimulus::read(path, &resolver)).transpose();
         let stimulus = stimulus.map_err(|(code, message)| Failure { code, message })?;

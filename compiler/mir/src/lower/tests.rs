@@ -111,7 +111,8 @@ impl Test {
 
     fn run_with(mut self, stmts: Vec<Stmt>, checks: Checks) -> Run {
         self.body(self.main, stmts);
-        let task = Task { name: "".into(), interval_ns: None, single: None, priority: 0, watchdog_ns: 0 };
+        let task =
+            Task { name: "".into(), interval_ns: None, single: None, priority: 0, watchdog_ns: 0, deadline_ns: None };
         let main = Program {
             name: "Main".into(),
             pou: self.main,
@@ -122,7 +123,7 @@ impl Test {
             initial: Vec::new(),
             span: SPAN,
         };
-        let resource = Resource { name: "".into(), tasks: vec![task], programs: vec![main] };
+        let resource = Resource { name: "".into(), tasks: vec![task], programs: vec![main], globals: Vec::new() };
         let app = Application { name: "".into(), resources: vec![resource], access: Vec::new() };
         let (program, layout) = lower(&self.defs, &app, 0, checks, false).expect("it fits");
         let problems = verify(&program);
