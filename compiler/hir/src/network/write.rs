@@ -770,6 +770,13 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 let is_bool = !plain(source.pin);
                 self.give(source, value, is_bool);
             }
+            // The words of operators cannot begin a statement.
+            _ if ["AND", "OR", "XOR", "NOT", "MOD"].contains(&key.as_str()) => {
+                let source = Source { element: index, pin: result.unwrap_or(0) };
+                self.flush(&Writes { names: in_outs, others: user });
+                self.temporary(source, bare, false);
+                self.give_outputs(index, &outputs, hidden_eno.as_ref());
+            }
             _ => {
                 let statement = Stmt { kind: StmtKind::Expr(bare), span };
                 self.push(statement, Writes { names: in_outs, others: user });
