@@ -19,6 +19,7 @@ use plcc_tests::passes::{Run, agree as passes_agree};
 use plcc_tests::reduce::reduce;
 use plcc_tests::{command, compile::compile, compile::compile_with_layout};
 use std::path::Path;
+use std::time::Duration;
 use structure::Ruled;
 
 const PLCC: &str = env!("CARGO_BIN_EXE_plcc-under-test");
@@ -276,14 +277,15 @@ fn passes_keep_the_meaning_of_charts() {
     let size = count.clamp(1, BATCH);
     for seed in first..first + count.div_ceil(size) {
         let batch = batch(seed, size, false);
-        let run = Run { cycles: CYCLES as usize, inputs: &|_, _| {}, native: true };
-        let outcome = |text: &str| -> Option<plcc_tests::passes::Disagreement> {
+        let run = |patience| Run { cycles: CYCLES as usize, inputs: &|_, _| {}, native: true, patience };
+        let (long, short) = (Duration::from_secs(60), Duration::from_millis(500));
+        let outcome = |text: &str, patience: Duration| -> Option<plcc_tests::passes::Disagreement> {
             let program = compile(text, batch.profile).ok()?;
-            passes_agree(&program, plcc_mir::opt::passes(), &run).err()
+            passes_agree(&program, plcc_mir::opt::passes(), &run(patience)).err()
         };
         let work = || {
-            let Some(found) = outcome(&batch.text) else { return };
-            let small = reduce(&batch.text, |text| outcome(text).is_some_and(|other| other.pass == found.pass));
+            let Some(found) = outcome(&batch.text, long) else { return };
+            let small = reduce(&batch.text, |text| outcome(text, short).is_some_and(|other| other.pass == found.pass));
             panic!("seed {seed}, {:?}: {found}\n{small}", batch.profile);
         };
         std::thread::scope(|s| {

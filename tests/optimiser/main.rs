@@ -20,7 +20,7 @@ fn optimised(declarations: &str, body: &str) -> Program {
 fn optimised_with(before: &str, declarations: &str, body: &str) -> Program {
     let text = format!("{before}PROGRAM Main\nVAR\n{declarations}\nEND_VAR\n{body}\nEND_PROGRAM\n");
     let mut program = compile(&text, Profile::Strict).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    let run = Run { cycles: 4, inputs: &|_, _| {}, native: true };
+    let run = Run { cycles: 4, inputs: &|_, _| {}, native: true, patience: std::time::Duration::from_secs(60) };
     agree(&program, passes(), &run).unwrap_or_else(|e| panic!("{e}\n{text}"));
     passes().iter().for_each(|pass| (pass.run)(&mut program));
     program

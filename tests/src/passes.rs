@@ -8,8 +8,11 @@ use super::memory::{bytes_of, difference, excerpt, region};
 use plcc_mir::interp::Interp;
 use plcc_mir::ir::{Program, SourceId};
 use plcc_mir::opt::Pass;
-use plcc_stdlib::region::{FAULT_INSTANCE, FAULT_OPERANDS, FAULT_SOURCE, HEADER_BYTES};
+use plcc_stdlib::region::{DEADLINE_FLAG, FAULT_INSTANCE, FAULT_OPERANDS, FAULT_SOURCE, HEADER_BYTES};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 const TICK_NS: i64 = 10_000_000;
 
@@ -36,6 +39,9 @@ pub struct Run<'a> {
     pub inputs: &'a (dyn Fn(usize, &mut [u8]) + Sync),
     /// Whether native code runs too.
     pub native: bool,
+    /// After this time the watchdog's flag is set, so that nothing hangs: a reduced program may loop for ever, and so may
+    /// what a wrong pass makes.
+    pub patience: Duration,
 }
 
 /// What is seen after a cycle.
@@ -46,7 +52,7 @@ struct Seen {
     memory: Vec<u8>,
 }
 
-/// Runs a program; `scan` executes one cycle.
+/// Runs a program; `scan` executes one cycle. Gives nothing if that took too long.
 fn run(
     program: &Program,
     run: &Run,
@@ -57,15 +63,28 @@ fn run(
     let mut lines = region(size);
     let mem = &mut bytes_of(&mut lines)[..size];
     init(mem);
-    let mut seen = Vec::new();
-    for cycle in 0..run.cycles {
-        (run.inputs)(cycle, mem);
-        let status = scan(mem, cycle as i64 * TICK_NS);
-        let fault = if status == 0 { String::new() } else { record(program, mem) };
-        let memory = mem[HEADER_BYTES as usize..program.frame_base as usize].to_vec();
-        seen.push(Seen { status, fault, memory });
-    }
-    seen
+    // SAFETY: it lies at the beginning of the region, aligned, and the region outlives the scope.
+    let flag = unsafe { AtomicU32::from_ptr(mem.as_mut_ptr().add(DEADLINE_FLAG as usize).cast()) };
+    std::thread::scope(|s| {
+        let (done, wait) = mpsc::channel::<()>();
+        let watchdog = s.spawn(move || {
+            let late = wait.recv_timeout(run.patience) == Err(RecvTimeoutError::Timeout);
+            if late {
+                flag.store(1, Ordering::Relaxed);
+            }
+            late
+        });
+        let mut seen = Vec::new();
+        for cycle in 0..run.cycles {
+            (run.inputs)(cycle, mem);
+            let status = scan(mem, cycle as i64 * TICK_NS);
+            let fault = if status == 0 { String::new() } else { record(program, mem) };
+            let memory = mem[HEADER_BYTES as usize..program.frame_base as usize].to_vec();
+            seen.push(Seen { status, fault, memory });
+        }
+        drop(done);
+        if watchdog.join().unwrap_or(true) { Vec::new() } else { seen }
+    })
 }
 
 fn record(program: &Program, mem: &[u8]) -> String {
@@ -91,6 +110,9 @@ fn native(program: &Program, how: &Run) -> Result<Vec<Seen>, String> {
 }
 
 fn same(before: &[Seen], after: &[Seen]) -> Result<(), String> {
+    if before.len() != after.len() {
+        return Err("runs too long".into());
+    }
     for (cycle, (x, y)) in before.iter().zip(after).enumerate() {
         let cycle = cycle + 1;
         if x.status != y.status {
@@ -115,6 +137,9 @@ fn same(before: &[Seen], after: &[Seen]) -> Result<(), String> {
 /// Runs a verified program before and after each pass. Gives how many cycles ended with a fault.
 pub fn agree(program: &Program, passes: &[Pass], how: &Run) -> Result<usize, Disagreement> {
     let before = interpret(program, how);
+    if before.is_empty() {
+        return Err(Disagreement { pass: "none".into(), what: "runs too long".into() });
+    }
     let mut program = program.clone();
     for (row, pass) in passes.iter().enumerate() {
         let fail = |what: String| Disagreement { pass: format!("pass {row} `{}`", pass.name), what };

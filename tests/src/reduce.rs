@@ -57,7 +57,8 @@ fn frame(lines: &[&str], at: usize) -> Option<Vec<usize>> {
     let depth = |line: &str| line.len() - line.trim_start().len();
     let own = depth(lines[at]);
     let mut list = vec![at];
-    if depth(lines.get(at + 1)?) <= own {
+    // Statements end with a semicolon, what opens a frame does not.
+    if lines[at].trim_end().ends_with(';') {
         return None;
     }
     for (n, line) in lines.iter().enumerate().skip(at + 1) {

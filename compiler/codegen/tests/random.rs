@@ -582,7 +582,8 @@ fn passes_keep_the_meaning() {
             let mut random = Random((seed << 8 | cycle as u64) ^ 0x5DEE_CE66_D001 | 1);
             mem[HEADER_BYTES as usize..GLOBALS_END as usize].copy_from_slice(&inputs(&mut random));
         };
-        let run = passes::Run { cycles: 4, inputs: &write, native: false };
+        let run =
+            passes::Run { cycles: 4, inputs: &write, native: false, patience: std::time::Duration::from_secs(60) };
         if let Err(found) = passes::agree(&program, plcc_mir::opt::passes(), &run) {
             panic!("PLCC_SEED={seed}: {found}\n{}", plcc_mir::print::program(&program, None));
         }

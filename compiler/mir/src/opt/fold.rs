@@ -290,6 +290,8 @@ impl Folder<'_> {
         place.index.retain_mut(|term| {
             for _ in 0..4 {
                 match self.defs[term.value] {
+                    // Outside of its bounds only behind a check that fails.
+                    Def::Const(raw) if !(term.low..=term.high).contains(&(raw as i64)) => return true,
                     Def::Const(raw) => {
                         *offset = offset.wrapping_add((raw as i64).wrapping_mul(i64::from(term.stride)));
                         return false;
