@@ -19,10 +19,9 @@ use index_vec::IndexVec;
 
 /// The pass.
 pub fn run(func: &mut Func) {
-    compact(func);
     loop {
         let mut changed = same_parameters(func);
-        changed |= dead_values(func);
+        dead_values(func);
         changed |= skip_empty_blocks(func);
         changed |= join_blocks(func);
         compact(func);
@@ -114,7 +113,7 @@ fn retain_unmarked(list: &mut Vec<ValueId>, marked: &[bool]) {
 }
 
 /// Pure instructions and parameters whose values nothing with an effect needs.
-fn dead_values(func: &mut Func) -> bool {
+fn dead_values(func: &mut Func) {
     /// What a live value makes live.
     #[derive(Clone, Copy)]
     enum Origin {
@@ -164,25 +163,22 @@ fn dead_values(func: &mut Func) -> bool {
             }
         }
     }
-    let mut changed = false;
+    let mut any = false;
     let drop: IndexVec<BlockId, Vec<bool>> = func
         .blocks
         .iter()
         .map(|block| {
             let dead: Vec<bool> = block.params.iter().map(|v| !live[*v]).collect();
-            changed |= dead.contains(&true);
+            any |= dead.contains(&true);
             dead
         })
         .collect();
-    if changed {
+    if any {
         remove_parameters(func, &drop);
     }
     for block in &mut func.blocks {
-        let before = block.insts.len();
         block.insts.retain(|inst| !is_pure(inst) || inst.results().0.is_none_or(|v| live[v]));
-        changed |= before != block.insts.len();
     }
-    changed
 }
 
 /// Jumps over blocks that do nothing but jump, and branches whose ways are one.

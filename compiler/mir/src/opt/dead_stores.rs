@@ -79,7 +79,12 @@ pub fn run(func: &mut Func, alias: &Alias) {
                         w.place.base == Base::Frame && !alias.may_read(func, &constants, inst, &w.place, w.bytes)
                     });
                 }
-                Inst::Load { .. } | Inst::CallText { .. } => {
+                // The most frequent case without a detour.
+                Inst::Load { dst, place, .. } => {
+                    let bytes = i64::from(func.values[*dst].bytes());
+                    written.retain(|w| !alias.overlap(&w.place, w.bytes, place, bytes));
+                }
+                Inst::CallText { .. } => {
                     change(&mut written, |w| alias.may_write(func, &constants, inst, &w.place, w.bytes));
                     written.retain(|w| !alias.may_read(func, &constants, inst, &w.place, w.bytes));
                 }
@@ -87,7 +92,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
             }
             // A place whose parts are made here is another one above.
             let (first, second) = inst.results();
-            if first.is_some() || second.is_some() {
+            if (first.is_some() || second.is_some()) && written.iter().any(|w| !is_fixed(&w.place)) {
                 written.retain(|w| {
                     let mut made_here = false;
                     w.place.for_each_use(|v| made_here |= first == Some(v) || second == Some(v));
@@ -123,6 +128,10 @@ pub fn run(func: &mut Func, alias: &Alias) {
 /// Another write in between: an exit behind it would have to know both.
 fn change(written: &mut Vec<Written>, touches: impl Fn(&Written) -> bool) {
     written.retain(|w| w.exits.is_empty() || w.place.base == Base::Frame || !touches(w));
+}
+
+fn is_fixed(place: &Place) -> bool {
+    place.index.is_empty() && !matches!(place.base, Base::Reference(_))
 }
 
 /// Whether the later write covers all that is stored here. An exit in between must owe exactly what that writes, else the

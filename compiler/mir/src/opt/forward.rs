@@ -115,7 +115,11 @@ fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec
 
 /// Forgets what an instruction may change.
 fn forget(func: &Func, alias: &Alias, constants: &Constants, inst: &Inst, known: &mut Vec<Known>) {
-    if writes(inst) {
+    // The most frequent case without a detour.
+    if let Inst::Store { place, value } = inst {
+        let bytes = i64::from(func.values[*value].bytes());
+        known.retain(|k| !alias.overlap(&k.place, i64::from(k.repr.bytes()), place, bytes));
+    } else if writes(inst) {
         known.retain(|k| !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes())));
     }
 }

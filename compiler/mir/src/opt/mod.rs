@@ -49,30 +49,35 @@ impl std::fmt::Debug for Pass {
 /// The passes in their order; a pass may come more than once.
 pub fn passes() -> &'static [Pass] {
     const TIDY: Pass = Pass { name: "tidy", run: |p| each(p, tidy) };
+    const FOLD: Pass = Pass { name: "fold", run: |p| each(p, fold_and_clean) };
     const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
     const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
     const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
     const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
-    const PROMOTE: Pass = Pass { name: "promote", run: |p| with_facts(p, promote::run) };
     const RANGES: Pass = Pass { name: "ranges", run: |p| each(p, ranges::run) };
     const INDUCTION: Pass = Pass { name: "induction", run: |p| each(p, induction::run) };
+    // What loops leave behind: functions without loops have seen it before.
+    const LOOP_FOLD: Pass = Pass { name: "fold", run: |p| each_with_loops(p, |f, _| fold_and_clean(f)) };
+    const LOOP_FORWARD: Pass = Pass { name: "forward", run: |p| each_with_loops(p, forward::run) };
+    const LOOP_DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| each_with_loops(p, dead_stores::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
         Pass { name: "references", run: alias::keep },
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
-        FRAMES, TIDY, FORWARD, TIDY, DEAD_STORES, TIDY,
-        SELECT, TIDY, FORWARD, DEAD_STORES, FRAMES, TIDY,
-        RANGES, TIDY,
-        PROMOTE, TIDY, FORWARD, TIDY, RANGES, TIDY, HOIST, TIDY, FORWARD, DEAD_STORES, TIDY,
+        FRAMES, TIDY, FORWARD, FOLD, DEAD_STORES,
+        SELECT, FOLD, FORWARD, DEAD_STORES, FRAMES, TIDY,
+        RANGES, FOLD,
+        Pass { name: "promote", run: |p| with_facts(p, promote::run) }, LOOP_FOLD, LOOP_FORWARD, LOOP_FOLD,
+        RANGES, FOLD, HOIST, LOOP_FORWARD, LOOP_DEAD_STORES, LOOP_FOLD,
         // Counters first: of a loop that was repeated they are not seen any more.
-        SELECT, TIDY, INDUCTION, TIDY,
-        Pass { name: "unroll", run: |p| each(p, unroll::run) }, TIDY, FORWARD, DEAD_STORES, TIDY,
-        Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, TIDY,
+        SELECT, FOLD, INDUCTION, FOLD,
+        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, DEAD_STORES, FOLD,
+        Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
-        Pass { name: "scale", run: |p| each(p, scale::run) }, TIDY, INDUCTION, TIDY, HOIST, TIDY,
+        Pass { name: "scale", run: |p| each(p, scale::run) }, FOLD, INDUCTION, LOOP_FOLD, HOIST,
         Pass { name: "rotate", run: |p| each(p, rotate::run) },
         Pass { name: "clean", run: |p| each(p, clean::run) },
     ];
@@ -93,11 +98,35 @@ pub fn optimise(program: &mut Program) {
     }
 }
 
-/// Constants and algebra, then what that left behind.
+/// Constants and algebra, in front of which and behind which the graph is tidied.
 fn tidy(func: &mut Func) {
     clean::run(func);
+    fold_and_clean(func);
+}
+
+/// The same for a graph that is tidy already.
+fn fold_and_clean(func: &mut Func) {
     fold::run(func);
     clean::run(func);
+}
+
+/// A pass over functions that have loops, in a tidy graph: there a jump backwards goes to a smaller number.
+fn each_with_loops(program: &mut Program, run: fn(&mut Func, &alias::Alias)) {
+    let has_loop = |func: &Func| {
+        func.blocks.iter_enumerated().any(|(id, block)| {
+            let mut back = false;
+            block.term.for_each_target(|target| back |= target.block <= id);
+            back
+        })
+    };
+    if !program.funcs.iter().any(has_loop) {
+        return;
+    }
+    let facts = alias::Facts::new(program);
+    for (id, func) in program.funcs.iter_mut().enumerate().filter(|(_, func)| has_loop(func)) {
+        let alias = alias::Alias::new(&facts, crate::ir::FuncId::from_usize(id), func);
+        run(func, &alias);
+    }
 }
 
 /// A pass over functions that asks what may be the same memory.
