@@ -76,11 +76,11 @@ pub fn run(func: &mut Func, alias: &Alias) {
                     continue;
                 }
             }
-            if let Some(length) = known_length(&inst, &constants, &lengths) {
-                if let (Some(dst), _) = inst.results() {
-                    replace.set(dst, length);
-                    continue;
-                }
+            if let Some(length) = known_length(&inst, &constants, &lengths)
+                && let (Some(dst), _) = inst.results()
+            {
+                replace.set(dst, length);
+                continue;
             }
             forget(func, alias, &constants, &inst, &mut known);
             if writes(&inst) {

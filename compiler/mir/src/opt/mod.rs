@@ -73,7 +73,7 @@ pub fn passes() -> &'static [Pass] {
         Pass { name: "promote", run: |p| with_facts(p, promote::run) }, LOOP_FOLD, LOOP_FORWARD, LOOP_FOLD,
         RANGES, FOLD, HOIST, LOOP_FORWARD, LOOP_DEAD_STORES, LOOP_FOLD,
         // Counters first: of a loop that was repeated they are not seen any more.
-        SELECT, FOLD, INDUCTION, LOOP_FOLD,
+        SELECT, FOLD, INDUCTION, FOLD,
         Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, DEAD_STORES, FOLD,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
