@@ -94,6 +94,8 @@ pub struct Translator<'a, 'f> {
     /// Bytes of the part of the memory that the function works on.
     region_bytes: u32,
     values: IndexVec<ValueId, Option<Value>>,
+    /// Register values of constants.
+    constants: IndexVec<ValueId, Option<u64>>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
     rt_callees: FxHashMap<&'static str, FuncRef>,
@@ -123,6 +125,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             shape,
             region_bytes: env.program.region_bytes,
             values: IndexVec::from_vec(vec![None; func.values.len()]),
+            constants: IndexVec::from_vec(vec![None; func.values.len()]),
             blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
             callees: FxHashMap::default(),
             rt_callees: FxHashMap::default(),
@@ -179,6 +182,16 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.values[id].unwrap_or_else(|| plcc_diag::bug!("v{} of `{}` has no value", id.index(), self.func.name))
     }
 
+    /// A value as it is stored: a real constant by its bits, which need no register of a real.
+    fn stored(&mut self, id: ValueId) -> Value {
+        let bits = match (self.func.values[id], self.constants[id]) {
+            (Repr::F32, Some(raw)) => (types::I32, raw),
+            (Repr::F64, Some(raw)) => (types::I64, raw),
+            _ => return self.value(id),
+        };
+        self.b.ins().iconst(bits.0, bits.1 as i64)
+    }
+
     fn target_block(&self, id: BlockId) -> ir::Block {
         self.blocks[id].unwrap_or_else(|| plcc_diag::bug!("b{} of `{}` is not reachable", id.index(), self.func.name))
     }
@@ -214,6 +227,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.b.set_srcloc(loc);
         match inst {
             Inst::Const { dst, raw } => {
+                self.constants[*dst] = Some(*raw);
                 let value = prim::constant(&mut self.b, self.func.values[*dst], *raw);
                 self.values[*dst] = Some(value);
             }
@@ -227,7 +241,7 @@ impl<'a, 'f> Translator<'a, 'f> {
                 self.values[*dst] = Some(value);
             }
             Inst::Store { place, value } => {
-                let value = self.value(*value);
+                let value = self.stored(*value);
                 self.store(place, value);
             }
             Inst::Copy { dst, src, bytes } => self.copy(dst, src, *bytes),
