@@ -377,6 +377,29 @@ fn bench_reports() {
     assert_eq!(bench(&["count.st", "--cycles", "0"]).code, 2);
 }
 
+#[test]
+fn traces_are_drawn() {
+    let f = folder_with(&[("good.st", COUNTER)]);
+    let run = plcc(f.path(), &["run", "good.st", "--virtual-time", "--cycles", "5", "--trace", "t.csv"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let done = plcc(f.path(), &["trace", "t.csv", "--svg", "t.svg"]);
+    assert_eq!((done.code, done.stdout.as_str()), (0, ""), "{}", done.stderr);
+    let svg = std::fs::read_to_string(f.path().join("t.svg")).expect("the drawing");
+    assert!(svg.starts_with("<svg ") && svg.contains(">Main.n</text>"), "{svg}");
+    assert_eq!(plcc(f.path(), &["trace", "t.csv"]).stdout, svg);
+    let part = plcc(f.path(), &["trace", "t.csv", "--cycles", "2..4", "--watch", "main.N"]).stdout;
+    assert!(part.contains(">4</text>") && !part.contains(">5</text>"), "{part}");
+    let wrong = |args: &[&str], code: i32, text: &str| {
+        let done = plcc(f.path(), &[&["trace"], args].concat());
+        assert!(done.code == code && done.stderr.contains(text), "{args:?}: {} {}", done.code, done.stderr);
+    };
+    wrong(&["t.csv", "--watch", "Main.m"], 2, "there is no column `Main.m`; did you mean `Main.n`?");
+    wrong(&["t.csv", "--cycles", "7.."], 2, "no such cycles");
+    wrong(&["t.csv", "--cycles", "seven"], 2, "is not FIRST..LAST");
+    wrong(&["good.st"], 2, "no trace");
+    wrong(&["none.csv"], 3, "none.csv");
+}
+
 /// PLCopen XML among the sources: mixed with text, in folders beside other XML, in project.toml; drawn, and as text.
 #[test]
 fn plcopen_xml() {

@@ -41,6 +41,9 @@ impl Tick {
     }
 }
 
+/// So often a long sleep looks whether it should stop: a signal may interrupt another thread than this one.
+const LOOK_EVERY_NS: i64 = 200_000_000;
+
 /// CLOCK_MONOTONIC in nanoseconds.
 pub fn monotonic_ns() -> i64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
@@ -96,7 +99,7 @@ impl Clock {
                     if stop() {
                         return None;
                     }
-                    sleep_until(release_ns);
+                    sleep_until(release_ns.min(now.saturating_add(LOOK_EVERY_NS)));
                     now = monotonic_ns();
                 }
                 let (skipped, late) = (release.skipped, release.late);

@@ -44,6 +44,8 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
         task.deadline_ns = flags.deadline.or(task.deadline_ns);
     }
     let image = &image;
+    // Virtual time does not sleep: with SCHED_FIFO nothing else would run.
+    let wanted = flags.realtime.filter(|_| !flags.virtual_time);
     let resolver = Resolver::new(image);
     let columns = match (&flags.trace, &flags.vcd, &flags.watch) {
         (None, None, None) => Vec::new(),
@@ -62,7 +64,8 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     let vcd =
         flags.vcd.as_deref().map(|path| Vcd::open(path, image, columns.clone())).transpose().map_err(unwritable)?;
     let trace = trace_path.map(|path| Trace::open(path, columns)).transpose().map_err(unwritable)?;
-    let driver = io::open(flags.io.as_deref().or(image.defaults.io.as_deref()).unwrap_or("none"), image, &resolver)?;
+    let driver_name = flags.io.as_deref().or(image.defaults.io.as_deref()).unwrap_or("none");
+    let driver = io::open(driver_name, image, &resolver)?;
     signals::install();
     let (retain, restored, writers) = open_retain(image, &resolver, flags)?;
     let mut mem = Region::new(image.region_bytes as usize);
@@ -80,7 +83,7 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     for (number, engine) in engines.iter_mut().enumerate() {
         let tasks = &image.tasks[image.tasks_of(number)];
         let resource = &image.resources[number];
-        let realtime = flags.realtime;
+        let realtime = wanted;
         let ready = move || {
             // What could not be had was said before.
             let _ = realtime.map(|request| realtime::enter(&request, 1, None));
@@ -110,18 +113,18 @@ fn prepare_and_run(image: &Image, engines: &mut [Box<dyn Engine>], flags: &RunFl
     let interval_ns = workers.iter().map(|(_, ns)| *ns).reduce(crate::task::gcd).unwrap_or(1);
     let shared_retain = writers.next().flatten();
     let edges = Edges::new(image, driver, forces.unwrap_or_default());
-    if flags.realtime.is_some()
+    if wanted.is_some()
         && let Err(e) = realtime::lock_memory()
     {
         eprintln!("{}: --realtime: {e}", image.name);
     }
     let report = |workers: &[(Worker, i64)]| print_now(image, &workers.iter().map(|(w, _)| w).collect::<Vec<_>>());
     // What is recorded needs one moment for all resources: then they run one after the other, as in virtual time.
-    let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some();
+    let recorded = trace.is_some() || vcd.is_some() || stimulus.is_some() || driver_name.starts_with("csv:");
     let (end, workers) = if image.resources.len() > 1 && !flags.virtual_time && !recorded {
         run_threads(image, &mut mem, workers, edges, shared_retain, flags, interval_ns)
     } else {
-        if let Some(request) = &flags.realtime
+        if let Some(request) = &wanted
             && let Err(e) = realtime::enter(request, 0, request.cpu)
         {
             eprintln!("{}: --realtime: {e}; it runs with normal scheduling", image.name);

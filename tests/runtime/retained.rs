@@ -136,4 +136,6 @@ fn killed_at_random_moments_nothing_is_torn_or_lost() {
         before = n;
     }
     assert!(before > 0 || kills < 3, "no run came to a cycle");
+    // A run that ends by itself leaves nothing in memory.
+    assert_eq!(plant.run("m", &["--retain", "r", "--virtual-time", "--cycles", "1"]).code, 0);
 }

@@ -313,9 +313,7 @@ impl Builder<'_> {
         }
         let desc = match self.defs.types.get(id).clone() {
             Type::Elem(elem) => TypeDesc::Elem(elem.code()),
-            Type::Subrange { base, low, high } => {
-                TypeDesc::Subrange { elem: base.code(), low: low.into(), high: high.into() }
-            }
+            Type::Subrange { base, low, high } => TypeDesc::Subrange { elem: base.code(), low, high },
             Type::Enum(id) => {
                 let def = &self.defs.enums[id];
                 let values = def.values.iter().map(|(n, v, _)| (n.to_string(), *v as i64)).collect();

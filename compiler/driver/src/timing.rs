@@ -10,9 +10,10 @@ const LEFT: f64 = 190.0;
 const TOP: f64 = 34.0;
 const LANE: f64 = 34.0;
 const GAP: f64 = 14.0;
-/// Width of a cycle, pixels: as wide as fits, within these.
+/// Width of a cycle, pixels: as wide as fits, within these, but narrower in a drawing that would get wider than the last.
 const CYCLE: (f64, f64) = (2.0, 28.0);
 const WIDTH: f64 = 1100.0;
+const WIDEST: f64 = 20_000.0;
 
 /// A column of the trace.
 struct Lane {
@@ -105,12 +106,13 @@ impl Lane {
         if all(|v| matches!(v, "TRUE" | "FALSE")) {
             return if self.name.to_ascii_uppercase().ends_with(".X") { Form::Step } else { Form::Level };
         }
-        if all(|v| v.parse::<f64>().is_ok_and(f64::is_finite)) { Form::Number } else { Form::Word }
+        if all(|v| number(v).is_some()) { Form::Number } else { Form::Word }
     }
 }
 
 fn draw(cycles: &[u64], lanes: &[Lane]) -> String {
-    let step = ((WIDTH - LEFT) / cycles.len() as f64).clamp(CYCLE.0, CYCLE.1);
+    let count = cycles.len() as f64;
+    let step = ((WIDTH - LEFT) / count).clamp(CYCLE.0, CYCLE.1).min(WIDEST / count);
     let width = LEFT + step * cycles.len() as f64 + 20.0;
     let height = TOP + lanes.len() as f64 * (LANE + GAP) + 10.0;
     let mut out = String::new();
@@ -146,8 +148,8 @@ fn draw(cycles: &[u64], lanes: &[Lane]) -> String {
 
 /// A line for each cycle while they are far enough apart, and numbers that do not overlap.
 fn grid(out: &mut String, cycles: &[u64], step: f64, height: f64) {
-    let every =
-        [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].into_iter().find(|e| *e as f64 * step >= 26.0).unwrap_or(1000);
+    let mut steps = (0..12).flat_map(|power| [1, 2, 5].map(|n| n * 10u64.pow(power)));
+    let every = steps.find(|e| *e as f64 * step >= 26.0).unwrap_or(u64::MAX);
     for (n, cycle) in cycles.iter().enumerate() {
         let x = LEFT + n as f64 * step;
         let numbered = cycle % every == 0 || (every == 1 || n == 0);
@@ -203,8 +205,16 @@ fn bars(out: &mut String, lane: &Lane, top: f64, step: f64) {
     }
 }
 
+/// A number or a duration, which is drawn as one.
+fn number(value: &str) -> Option<f64> {
+    if let Some(duration) = value.strip_prefix("T#").or_else(|| value.strip_prefix("LTIME#")) {
+        return plcc_stdlib::literal::duration(duration).ok().map(|ns| ns as f64);
+    }
+    value.parse().ok().filter(|n: &f64| n.is_finite())
+}
+
 fn curve(out: &mut String, lane: &Lane, top: f64, step: f64) {
-    let number = |v: &str| v.parse::<f64>().unwrap_or(0.0);
+    let number = |v: &str| number(v).unwrap_or(0.0);
     let numbers = lane.values.iter().map(|v| number(v));
     let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     let span = if high > low { high - low } else { 1.0 };
@@ -277,6 +287,16 @@ mod tests {
         assert_eq!(svg.matches("class=\"word\"").count(), 2);
         assert!(svg.contains("Run&lt;") && svg.contains(">-2</text>"));
         assert_eq!(svg.matches("class=\"grid\"").count(), 3);
+    }
+
+    #[test]
+    fn durations_are_curves_and_long_traces_stay_drawings() {
+        assert_eq!((number("T#1s500ms"), number("T#-2ms"), number("inf")), (Some(1.5e9), Some(-2e6), None));
+        let lane = Lane { name: "t".into(), values: (0..100_000).map(|n| format!("T#{n}ms")).collect() };
+        let svg = draw(&(1..=100_000).collect::<Vec<_>>(), &[lane]);
+        assert!(svg.contains("width=\"20210\""), "{}", &svg[..200]);
+        // Numbered lines only.
+        assert!(svg.matches("class=\"grid\"").count() < 800);
     }
 
     #[test]

@@ -298,9 +298,11 @@ mod tests {
         let changed = image(&[("c", 64), ("B", 100)]);
         let opened = open(&path, &changed).unwrap();
         assert_eq!(opened.restored, [value(100, 80)]);
-        drop(opened);
+        drop(opened.retain);
         // The new file holds them even though nothing was captured.
-        assert_eq!(open(&path, &changed).unwrap().restored, [value(64, 0), value(100, 80)]);
+        let opened = open(&path, &changed).unwrap();
+        assert_eq!(opened.restored, [value(64, 0), value(100, 80)]);
+        opened.retain.finish().unwrap();
         let _ = std::fs::remove_file(path);
     }
 
@@ -317,7 +319,10 @@ mod tests {
         let at = found(&bytes, 2);
         bytes[at] ^= 4;
         std::fs::write(&path, &bytes).unwrap();
-        assert_eq!(open(&path, &image).unwrap().restored, [Restored { offset: 64, bit: None, bytes: vec![1, 1] }]);
+        let opened = open(&path, &image).unwrap();
+        assert_eq!(opened.restored, [Restored { offset: 64, bit: None, bytes: vec![1, 1] }]);
+        drop(opened.retain);
+        live::remove(&file::parse(&bytes).unwrap().id);
         let at = found(&bytes, 1);
         bytes[at] ^= 4;
         std::fs::write(&path, &bytes).unwrap();

@@ -731,7 +731,13 @@ impl<'n> Writer<'n, '_, '_, '_> {
         }
         let effects = !outputs.is_empty() || hidden_eno.is_some() || !in_outs.is_empty();
         let source = result.map(|pin| Source { element: index, pin });
-        let bare = match self.as_operator(element, &key, &values, user, effects) {
+        let plain = |p: usize| !element.outputs[p].modifier.negated && element.outputs[p].modifier.edge.is_none();
+        let uses = source.and_then(|s| self.uses.get(&s)).copied().unwrap_or(0);
+        let late = source.is_some_and(|s| self.late.contains_key(&s));
+        let used = uses > 0 || late;
+        // What no one uses is called all the same: its inputs are checked, and it may do something besides.
+        let operator = if used { self.as_operator(element, &key, &values, user, effects) } else { None };
+        let bare = match operator {
             Some(operator) => operator,
             None => {
                 let mut args = self.formal(element, values, !outputs.is_empty() || hidden_eno.is_some());
@@ -744,13 +750,10 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 call(node(ExprKind::Name(ty.clone()), 0, span), args, span)
             }
         };
-        let plain = |p: usize| !element.outputs[p].modifier.negated && element.outputs[p].modifier.edge.is_none();
-        let uses = source.and_then(|s| self.uses.get(&s)).copied().unwrap_or(0);
-        let late = source.is_some_and(|s| self.late.contains_key(&s));
         // A user's function may do something besides; it stands alone, or where it is used next.
         let used_next = uses == 1 && !late && !effects && next.is_some_and(|n| self.consumes(n, index));
         match source {
-            Some(source) if uses > 0 || late => {
+            Some(source) if used => {
                 let mut value = bare;
                 if effects || (user && !used_next) || (element.order.is_some() && !used_next) {
                     let writes = Writes { names: in_outs, others: user };
@@ -767,8 +770,15 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 let is_bool = !plain(source.pin);
                 self.give(source, value, is_bool);
             }
+            // The words of operators cannot begin a statement.
+            _ if ["AND", "OR", "XOR", "NOT", "MOD"].contains(&key.as_str()) => {
+                let source = Source { element: index, pin: result.unwrap_or(0) };
+                self.flush(&Writes { names: in_outs, others: user });
+                self.temporary(source, bare, false);
+                self.give_outputs(index, &outputs, hidden_eno.as_ref());
+            }
             _ => {
-                let statement = Stmt { kind: StmtKind::Expr(as_call(bare, ty)), span };
+                let statement = Stmt { kind: StmtKind::Expr(bare), span };
                 self.push(statement, Writes { names: in_outs, others: user });
                 self.give_outputs(index, &outputs, hidden_eno.as_ref());
             }
@@ -898,25 +908,6 @@ fn is_simple(e: &Expr) -> bool {
 fn is_in_out(element: &Element, pin: &Pin) -> bool {
     let same = |list: &[Pin]| list.iter().any(|p| !p.name.is_empty() && p.name.eq_ignore_ascii_case(&pin.name));
     pin.in_out || (same(&element.inputs) && same(&element.outputs))
-}
-
-/// A value as a statement needs a call.
-fn as_call(e: Expr, ty: &Name) -> Expr {
-    if matches!(e.kind, ExprKind::Call(_)) {
-        return e;
-    }
-    let span = e.span;
-    let mut args = Vec::new();
-    let mut open = vec![e];
-    while let Some(e) = open.pop() {
-        match e.kind {
-            ExprKind::Binary(_, at, a, b) if at == span => open.extend([*b, *a]),
-            ExprKind::Unary(UnaryOp::Not, inner) if ty.text.eq_ignore_ascii_case("NOT") => args.push(*inner),
-            kind => args.push(Expr { kind, ..e }),
-        }
-    }
-    let args = args.into_iter().map(|e| positional(e, span)).collect();
-    call(node(ExprKind::Name(ty.clone()), 0, span), args, span)
 }
 
 /// How messages name an input.

@@ -20,6 +20,9 @@ use plcc_stdlib::rt::strings::{TextFn, TextFns};
 /// So many places are remembered at once.
 const KNOWN: usize = 40;
 
+/// So many instructions after its last use a value that is no constant is better read again than kept.
+const LIFETIME: u32 = 64;
+
 /// A place whose value is known.
 #[derive(Debug, Clone, PartialEq)]
 struct Known {
@@ -28,6 +31,8 @@ struct Known {
     value: ValueId,
     /// The value is a truth value, also where memory may hold any byte.
     truth: bool,
+    /// When it was last read or written.
+    used: u32,
 }
 
 /// A string whose length is known.
@@ -45,6 +50,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let tree = Dominators::new(func);
     let constants = Constants::new(func);
     let mut replace = Replace::new(func);
+    let mut clock = 0;
     let mut lengths: Vec<Length> = Vec::new();
     let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
@@ -53,12 +59,18 @@ pub fn run(func: &mut Func, alias: &Alias) {
         let insts = std::mem::take(&mut func.blocks[block].insts);
         let mut out = Vec::with_capacity(insts.len());
         for mut inst in insts {
+            clock += 1;
             replace.inst(&mut inst);
             if let Inst::Load { dst, place, normalise } = &inst {
                 let repr = func.values[*dst];
-                let found = known.iter().position(|k| k.place == *place && k.repr == repr && (k.truth || !normalise));
+                let found = known.iter().position(|k| {
+                    k.place == *place
+                        && k.repr == repr
+                        && (k.truth || !normalise)
+                        && (clock - k.used < LIFETIME || constants.get(k.value).is_some())
+                });
                 if let Some(n) = found {
-                    let one = known.remove(n);
+                    let one = Known { used: clock, ..known.remove(n) };
                     replace.set(*dst, one.value);
                     known.push(one);
                     continue;
@@ -80,12 +92,24 @@ pub fn run(func: &mut Func, alias: &Alias) {
             match &inst {
                 Inst::Load { dst, place, normalise } => {
                     let truth = *normalise || place.bit.is_some();
-                    known.push(Known { place: place.clone(), repr: func.values[*dst], value: *dst, truth });
+                    known.push(Known {
+                        place: place.clone(),
+                        repr: func.values[*dst],
+                        value: *dst,
+                        truth,
+                        used: clock,
+                    });
                 }
                 Inst::Store { place, value } => {
                     // What is stored as a truth value is one; other bytes are not normalised when they are read back.
                     let truth = place.bit.is_some();
-                    known.push(Known { place: place.clone(), repr: func.values[*value], value: *value, truth });
+                    known.push(Known {
+                        place: place.clone(),
+                        repr: func.values[*value],
+                        value: *value,
+                        truth,
+                        used: clock,
+                    });
                 }
                 _ => {}
             }
@@ -106,7 +130,7 @@ fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec
     let Some(mut known) = ends[*first].clone() else { return Vec::new() };
     for pred in rest {
         match &ends[*pred] {
-            Some(other) => known.retain(|k| other.contains(k)),
+            Some(other) => known.retain(|k| other.iter().any(|o| Known { used: k.used, ..o.clone() } == *k)),
             None => return Vec::new(),
         }
     }

@@ -25,10 +25,15 @@ pub struct Loop {
     pub depth: usize,
 }
 
+/// Passes over loops look at the whole function for each. Where that would be more than so many instructions, they find
+/// none: the time that a function takes stays in proportion to its size.
+const WORK: usize = 40_000_000;
+
 /// The loops of a function, inner ones before outer ones. Adds the blocks in front and on the ways out.
 pub fn find(func: &mut Func) -> Vec<Loop> {
     let bodies = bodies(func, &Dominators::new(func));
-    if bodies.is_empty() {
+    let size: usize = func.blocks.iter().map(|block| block.insts.len() + 1).sum();
+    if bodies.is_empty() || bodies.len().saturating_mul(size) > WORK {
         return Vec::new();
     }
     for (header, body) in &bodies {

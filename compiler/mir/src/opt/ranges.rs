@@ -243,6 +243,10 @@ impl<'a> Walker<'a> {
                 (None, None) => Interval::full(repr),
             };
             let unknown = self.given_up && self.mode == Mode::Grow && self.has_ways_back(block);
+            if unknown {
+                // What comes back is not known in full, and shrinking starts from here.
+                self.back[*param] = Some(Interval::full(repr));
+            }
             self.taken[*param] = if unknown { Interval::full(repr) } else { comes };
             self.covered[*param] = false;
         }
