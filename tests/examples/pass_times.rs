@@ -26,7 +26,7 @@ fn main() {
     for (name, shape) in SHAPES {
         let mut table: Vec<(&str, Vec<f64>)> = Vec::new();
         let mut head = String::new();
-        for count in [500, 1000, 2000, 4000] {
+        for count in [250, 500, 1000, 2000] {
             let body: String = (0..count).map(shape).collect();
             let text = format!(
                 "PROGRAM Main VAR a : ARRAY [0..9] OF DINT; d : DINT; i, j, k : INT; END_VAR\n{body}\nEND_PROGRAM\n"

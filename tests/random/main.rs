@@ -2,7 +2,7 @@
 //! the same trace when many of them are linked into one executable.
 //!
 //! `RANDOM_PROGRAMS` (default 400) says how many for interpreter against JIT, `RANDOM_LINKED` (default 60) how many for the
-//! linked batches, `RANDOM_PASSES` (default 120) how many for the passes of the optimiser, `RANDOM_SEED` where to start. A
+//! linked batches, `RANDOM_PASSES` (default 80) how many for the passes of the optimiser, `RANDOM_SEED` where to start. A
 //! failure prints the seed and the program.
 
 mod generate;

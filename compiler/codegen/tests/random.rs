@@ -574,7 +574,7 @@ fn passes_keep_the_meaning() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let (first, last) = match number("PLCC_SEED") {
         Some(seed) => (seed, seed),
-        None => (1_000_001, 1_000_000 + number("PLCC_PROGRAMS").unwrap_or(300)),
+        None => (1_000_001, 1_000_000 + number("PLCC_PROGRAMS").unwrap_or(120)),
     };
     for seed in first..=last {
         let program = generate(seed);
