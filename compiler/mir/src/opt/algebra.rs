@@ -50,7 +50,7 @@ pub fn simplify(op: PrimOp, repr: Repr, args: Args, defs: &Defs) -> Option<Simpl
         Args::One([x]) => unary(op, repr, x, defs),
         Args::Two([x, y]) => match (constant(x), constant(y)) {
             (Some(_), None) if commutes(op) => Some(Simpler::Prim(op, repr, Args::Two([y, x]))),
-            (_, Some(c)) => with_constant(op, repr, x, y, c, defs),
+            (_, Some(c)) => with_constant(op, repr, x, c, defs),
             (None, None) if x == y => of_same(op, x),
             (None, None) if commutes(op) && y < x => Some(Simpler::Prim(op, repr, Args::Two([y, x]))),
             _ => None,
@@ -107,7 +107,7 @@ fn of_same(op: PrimOp, x: ValueId) -> Option<Simpler> {
 }
 
 /// The second operand is a constant, the first is not.
-fn with_constant(op: PrimOp, repr: Repr, x: ValueId, y: ValueId, c: u64, defs: &Defs) -> Option<Simpler> {
+fn with_constant(op: PrimOp, repr: Repr, x: ValueId, c: u64, defs: &Defs) -> Option<Simpler> {
     use PrimOp::*;
     let all = repr.mask();
     let value = Some(Simpler::Value(x));
@@ -165,10 +165,7 @@ fn with_constant(op: PrimOp, repr: Repr, x: ValueId, y: ValueId, c: u64, defs: &
             let same = repr.sign_extend(c) == inner_repr.sign_extend(narrow);
             same.then_some(Simpler::WithConst(op, inner_repr, args[0], (inner_repr, narrow)))
         }
-        _ => {
-            let _ = y;
-            None
-        }
+        _ => None,
     }
 }
 

@@ -31,7 +31,7 @@ const WORK: usize = 40_000_000;
 
 /// The loops of a function, inner ones before outer ones. Adds the blocks in front and on the ways out.
 pub fn find(func: &mut Func) -> Vec<Loop> {
-    let bodies = bodies(func, &Dominators::new(func));
+    let bodies = bodies(&Dominators::new(func));
     let size: usize = func.blocks.iter().map(|block| block.insts.len() + 1).sum();
     if bodies.is_empty() || bodies.len().saturating_mul(size) > WORK {
         return Vec::new();
@@ -44,7 +44,7 @@ pub fn find(func: &mut Func) -> Vec<Loop> {
     }
     // Blocks that were added may belong to outer loops.
     let tree = Dominators::new(func);
-    let bodies = self::bodies(func, &tree);
+    let bodies = self::bodies(&tree);
     let mut position: IndexVec<BlockId, usize> = IndexVec::from_vec(vec![0; func.blocks.len()]);
     tree.order.iter().enumerate().for_each(|(n, block)| position[*block] = n);
     let mut depth: FxHashMap<BlockId, usize> = FxHashMap::default();
@@ -74,7 +74,7 @@ pub fn find(func: &mut Func) -> Vec<Loop> {
 }
 
 /// Headers and blocks of all loops.
-fn bodies(func: &Func, tree: &Dominators) -> Vec<(BlockId, FxHashSet<BlockId>)> {
+fn bodies(tree: &Dominators) -> Vec<(BlockId, FxHashSet<BlockId>)> {
     let mut list: Vec<(BlockId, FxHashSet<BlockId>)> = Vec::new();
     for &header in &tree.order {
         if header.index() == 0 {
@@ -95,7 +95,6 @@ fn bodies(func: &Func, tree: &Dominators) -> Vec<(BlockId, FxHashSet<BlockId>)> 
         }
         list.push((header, body));
     }
-    let _ = func;
     list
 }
 
