@@ -95,7 +95,12 @@ fn record(program: &Program, mem: &[u8]) -> String {
         Some(row) => format!("{:?} of `{}`, `{}`", row.span, row.pou, row.what),
         None => "no row of the source table".into(),
     };
-    format!("{source}, instance {}, operands {:?}", word(FAULT_INSTANCE), [number(0), number(1), number(2)])
+    // Frames of bodies that were put in lie elsewhere.
+    let instance = match word(FAULT_INSTANCE) {
+        offset if offset >= program.frame_base => "in a frame".to_string(),
+        offset => offset.to_string(),
+    };
+    format!("{source}, instance {instance}, operands {:?}", [number(0), number(1), number(2)])
 }
 
 fn interpret(program: &Program, how: &Run) -> Vec<Seen> {

@@ -66,7 +66,8 @@ pub fn run(func: &mut Func, alias: &Alias) {
                 let found = known.iter().position(|k| {
                     k.place == *place
                         && k.repr == repr
-                        && (k.truth || !normalise)
+                        // A byte that was read as a truth value may be another one in memory.
+                        && (if *normalise { k.truth } else { !k.truth || place.bit.is_some() })
                         && (clock - k.used < LIFETIME || constants.get(k.value).is_some())
                 });
                 if let Some(n) = found {
