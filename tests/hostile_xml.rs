@@ -173,6 +173,26 @@ fn references_that_lead_nowhere_or_in_circles() {
 }
 
 #[test]
+fn names_of_pins_beyond_ascii() {
+    // The second byte lies inside a letter.
+    for name in ["a\u{e9}b", "\u{e9}", "IN\u{663}", "I\u{301}N2"] {
+        let pins = format!(
+            "<variable formalParameter=\"IN1\">{0}</variable><variable formalParameter=\"{name}\">{0}</variable>\
+             <variable formalParameter=\"{name}x\"><connectionPointIn/></variable>",
+            from(1)
+        );
+        let body = format!(
+            "<FBD><inVariable localId=\"1\"><connectionPointOut/><expression>a</expression></inVariable>\
+             <block localId=\"2\" typeName=\"AND\"><inputVariables>{pins}</inputVariables><outputVariables>\
+             <variable formalParameter=\"OUT\"><connectionPointOut/></variable></outputVariables></block>\
+             <outVariable localId=\"3\">{}<expression>q</expression></outVariable></FBD>",
+            from(2)
+        );
+        refused(project(&body).as_bytes(), "E0413");
+    }
+}
+
+#[test]
 fn ids_that_stand_twice() {
     let input = "<inVariable localId=\"1\"><connectionPointOut/><expression>a</expression></inVariable>";
     refused(project(&format!("<FBD>{}</FBD>", input.repeat(3))).as_bytes(), "E0410");

@@ -822,9 +822,10 @@ impl<'n> Writer<'n, '_, '_, '_> {
         }
         let element = self.at(index);
         let numbered = |p: &Pin| {
-            p.name.len() > 2
-                && p.name[..2].eq_ignore_ascii_case("IN")
-                && p.name[2..].bytes().all(|b| b.is_ascii_digit())
+            let parts = p.name.split_at_checked(2);
+            parts.is_some_and(|(word, number)| {
+                word.eq_ignore_ascii_case("IN") && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
+            })
         };
         let connected = element.inputs.iter().zip(values.iter()).filter(|(p, v)| numbered(p) && v.is_some()).count();
         for (pin, value) in values.iter_mut().enumerate() {
