@@ -204,6 +204,7 @@ fn give_changed(share: &Share, now: &[u8], before: &[u8], to: &mut [u8]) {
 mod tests {
     use super::*;
     use crate::engine::Region;
+    use crate::io::Nothing;
 
     /// Two resources of 16 bytes, the home behind them: a byte of bits and two values of four bytes.
     fn image() -> Image {
@@ -217,16 +218,6 @@ mod tests {
             home: (32, 16),
             areas: [(32, 0), (32, 1), (33, 0)],
             ..Image::default()
-        }
-    }
-
-    struct Nothing;
-    impl IoDriver for Nothing {
-        fn read(&mut self, _: &mut [u8]) -> Result<(), String> {
-            Ok(())
-        }
-        fn write(&mut self, _: &[u8]) -> Result<(), String> {
-            Ok(())
         }
     }
 

@@ -30,7 +30,7 @@ pub trait IoDriver: Send {
 }
 
 /// `none`: inputs stay as they are (a stimulus may set them), outputs go nowhere.
-struct Nothing;
+pub(crate) struct Nothing;
 
 impl IoDriver for Nothing {
     fn read(&mut self, _: &mut [u8]) -> Result<(), String> {

@@ -88,19 +88,9 @@ fn same_parameters(func: &mut Func) -> bool {
 
 /// Leaves out the marked parameters and what jumps give them.
 fn remove_parameters(func: &mut Func, drop: &IndexVec<BlockId, Vec<bool>>) {
-    for (id, block) in func.blocks.iter_mut_enumerated() {
-        retain_unmarked(&mut block.params, &drop[id]);
+    for (block, dropped) in func.blocks.iter_mut().zip(drop) {
+        retain_unmarked(&mut block.params, dropped);
         visit::targets(&mut block.term, &mut |target| retain_unmarked(&mut target.args, &drop[target.block]));
-    }
-}
-
-trait IterMutEnumerated {
-    fn iter_mut_enumerated(&mut self) -> impl Iterator<Item = (BlockId, &mut Block)>;
-}
-
-impl IterMutEnumerated for IndexVec<BlockId, Block> {
-    fn iter_mut_enumerated(&mut self) -> impl Iterator<Item = (BlockId, &mut Block)> {
-        self.iter_mut().enumerate().map(|(n, block)| (BlockId::from_usize(n), block))
     }
 }
 

@@ -1,4 +1,4 @@
-//! A store that another one replaces before anyone can see it is left out.
+//! A store that another one replaces before anyone can see it is left out; so are copies and clearings.
 //!
 //! From the end to the start the places are remembered that are written on every way before they are read. A check or poll
 //! in between sees them if it fails: it then owes the store that was left out, if both stand in one block, so that nothing

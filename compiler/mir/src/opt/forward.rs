@@ -3,6 +3,8 @@
 //! Along every way the places are remembered whose value is known, the latest ones only: a value that is kept long costs a
 //! register, and its memory is never far. Where ways meet, what all of them know stays. Loops begin with nothing.
 //!
+//! Inside a block the lengths of strings are known too that were just built or measured: LEN of them is that value.
+//!
 //! ```text
 //! store i8 t.IN := v0
 //! v1 = load i8 t.IN          =>    store i8 t.IN := v0
@@ -10,7 +12,7 @@
 //! ```
 
 use super::alias::Alias;
-use super::rewrite::{Constants, Replace};
+use super::rewrite::{Constants, Replace, writes_memory};
 use crate::dominators::Dominators;
 use crate::ir::{BlockId, Func, Inst, Place, ValueId};
 use index_vec::IndexVec;
@@ -84,7 +86,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
                 continue;
             }
             forget(func, alias, &constants, &inst, &mut known);
-            if writes(&inst) {
+            if writes_memory(&inst) {
                 lengths.retain(|l| !alias.may_write(func, &constants, &inst, &l.place, l.bytes));
             }
             if let Some(length) = length_of(&inst, &constants) {
@@ -144,16 +146,9 @@ fn forget(func: &Func, alias: &Alias, constants: &Constants, inst: &Inst, known:
     if let Inst::Store { place, value } = inst {
         let bytes = i64::from(func.values[*value].bytes());
         known.retain(|k| !alias.overlap(&k.place, i64::from(k.repr.bytes()), place, bytes));
-    } else if writes(inst) {
+    } else if writes_memory(inst) {
         known.retain(|k| !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes())));
     }
-}
-
-fn writes(inst: &Inst) -> bool {
-    matches!(
-        inst,
-        Inst::Store { .. } | Inst::Copy { .. } | Inst::Zero { .. } | Inst::Call { .. } | Inst::CallText { .. }
-    )
 }
 
 /// The length of the string that an instruction builds or measures. LEN tells no more than an INT can hold, so only

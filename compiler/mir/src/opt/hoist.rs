@@ -1,7 +1,7 @@
 //! What is the same in every pass of a loop is calculated before it.
 //!
-//! Operations on values from outside; loads that nothing in the loop writes, where they are safe before it ([`Proven`]). Not more than some values leave a loop:
-//! each takes a register through all of it.
+//! Operations on values from outside; loads that nothing in the loop writes, where they are safe before it ([`Proven`]).
+//! Not more than some values leave a loop: each takes a register through all of it.
 //!
 //! ```text
 //! b1: ...; jump b2                    b1: ...; v1 = load f32 gain; jump b2
@@ -12,7 +12,7 @@
 use super::alias::Alias;
 use super::loops;
 use super::proven::Proven;
-use super::rewrite::Constants;
+use super::rewrite::{Constants, writes_memory};
 use crate::dominators::Dominators;
 use crate::ir::{Func, Inst, ValueId};
 use rustc_hash::FxHashSet;
@@ -42,14 +42,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
             for inst in &block.insts {
                 let (first, second) = inst.results();
                 made_inside.extend(first.into_iter().chain(second));
-                if matches!(
-                    inst,
-                    Inst::Store { .. }
-                        | Inst::Copy { .. }
-                        | Inst::Zero { .. }
-                        | Inst::Call { .. }
-                        | Inst::CallText { .. }
-                ) {
+                if writes_memory(inst) {
                     writers.push(inst.clone());
                 }
             }
@@ -62,19 +55,16 @@ pub fn run(func: &mut Func, alias: &Alias) {
                 let is_constant = matches!(inst, Inst::Const { .. });
                 let mut outside = true;
                 inst.for_each_use(|v| outside &= !made_inside.contains(&v));
-                let may = outside && (is_constant || hoisted < HOISTED) && {
-                    match &inst {
-                        Inst::Const { .. } | Inst::AddressOf { .. } | Inst::CallRt { .. } => true,
-                        Inst::Prim { .. } => true,
-                        Inst::Load { dst, place, .. } => {
-                            let bytes = i64::from(func.values[*dst].bytes());
-                            let safe = proven.is_safe(place, l.preheader, &tree);
-                            safe && !writers.iter().any(|w| alias.may_write(func, &constants, w, place, bytes))
-                        }
-                        _ => false,
+                let may_move = match &inst {
+                    Inst::Const { .. } | Inst::Prim { .. } | Inst::AddressOf { .. } | Inst::CallRt { .. } => true,
+                    Inst::Load { dst, place, .. } => {
+                        let bytes = i64::from(func.values[*dst].bytes());
+                        let safe = proven.is_safe(place, l.preheader, &tree);
+                        safe && !writers.iter().any(|w| alias.may_write(func, &constants, w, place, bytes))
                     }
+                    _ => false,
                 };
-                if may {
+                if outside && may_move && (is_constant || hoisted < HOISTED) {
                     hoisted += usize::from(!is_constant);
                     if let (Some(dst), _) = inst.results() {
                         made_inside.remove(&dst);

@@ -2,8 +2,7 @@
 //!
 //! A callee's instance becomes the place it is called on, so that the variables of instances at fixed places are fixed
 //! places too, which is what all later passes live on. Its frame becomes a part of the caller's, one for each callee, so that
-//! what lies there has one type each.
-//! A call that catches faults stays a call. What no task reaches any more is left out of the program.
+//! what lies there has one type each. A call that catches faults stays a call. What no task reaches any more is left out of the program.
 //!
 //! ```text
 //! call f1 `TON`() on t     =>     v9 = load i8 t.IN

@@ -110,32 +110,34 @@ fn fold_and_clean(func: &mut Func) {
     clean::run(func);
 }
 
-/// A pass over functions that have loops, in a tidy graph: there a jump backwards goes to a smaller number.
+/// A pass over functions that asks what may be the same memory.
+fn with_facts(program: &mut Program, run: fn(&mut Func, &alias::Alias)) {
+    with_facts_where(program, |_| true, run);
+}
+
+/// The same over functions that have loops.
 fn each_with_loops(program: &mut Program, run: fn(&mut Func, &alias::Alias)) {
-    let has_loop = |func: &Func| {
-        func.blocks.iter_enumerated().any(|(id, block)| {
-            let mut back = false;
-            block.term.for_each_target(|target| back |= target.block <= id);
-            back
-        })
-    };
-    if !program.funcs.iter().any(has_loop) {
+    with_facts_where(program, may_loop, run);
+}
+
+fn with_facts_where(program: &mut Program, wanted: fn(&Func) -> bool, run: fn(&mut Func, &alias::Alias)) {
+    if !program.funcs.iter().any(wanted) {
         return;
     }
     let facts = alias::Facts::new(program);
-    for (id, func) in program.funcs.iter_mut().enumerate().filter(|(_, func)| has_loop(func)) {
+    for (id, func) in program.funcs.iter_mut().enumerate().filter(|(_, func)| wanted(func)) {
         let alias = alias::Alias::new(&facts, crate::ir::FuncId::from_usize(id), func);
         run(func, &alias);
     }
 }
 
-/// A pass over functions that asks what may be the same memory.
-fn with_facts(program: &mut Program, run: fn(&mut Func, &alias::Alias)) {
-    let facts = alias::Facts::new(program);
-    for (id, func) in program.funcs.iter_mut().enumerate() {
-        let alias = alias::Alias::new(&facts, crate::ir::FuncId::from_usize(id), func);
-        run(func, &alias);
-    }
+/// However blocks are numbered, every circle has a jump to a number that is not greater; in a tidy graph only circles have.
+fn may_loop(func: &Func) -> bool {
+    func.blocks.iter_enumerated().any(|(id, block)| {
+        let mut back = false;
+        block.term.for_each_target(|target| back |= target.block <= id);
+        back
+    })
 }
 
 /// A pass over functions that needs to know nothing of the others.

@@ -1,8 +1,8 @@
 //! Variables that a loop reads and writes are values inside it and memory again behind it.
 //!
-//! A scalar whose place is the same in every pass, which nothing else in the loop touches, is read once before the loop and written once on
-//! every way out. Checks and polls inside owe it, so that a fault finds the memory of the statement order. Inner loops
-//! come first; what they leave in the loop around them is promoted there.
+//! A scalar whose place is the same in every pass, which nothing else in the loop touches, is read once before the loop
+//! and written once on every way out. Checks and polls inside owe it, so that a fault finds the memory of the statement
+//! order. Inner loops come first; what they leave in the loop around them is promoted there.
 //!
 //! ```text
 //! b1: jump b2                          b1: v9 = load i32 sum; jump b2(v9)

@@ -77,6 +77,14 @@ pub fn is_pure(inst: &Inst) -> bool {
     )
 }
 
+/// Whether an instruction may write memory that others see; what a fault owes is not its business.
+pub fn writes_memory(inst: &Inst) -> bool {
+    matches!(
+        inst,
+        Inst::Store { .. } | Inst::Copy { .. } | Inst::Zero { .. } | Inst::Call { .. } | Inst::CallText { .. }
+    )
+}
+
 /// The register values of those values that are constants.
 pub struct Constants(IndexVec<ValueId, Option<u64>>);
 

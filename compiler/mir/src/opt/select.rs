@@ -97,11 +97,8 @@ fn plan(
         let arms = [arm(then, &then_on, join)?, arm(otherwise, &otherwise_on, join)?];
         Some((join, arms))
     })?;
-    if join == id || arms.iter().all(|arm| arm.block.is_none()) {
-        // Two ways to one block without anything on them: only values are chosen.
-        if join == id {
-            return None;
-        }
+    if join == id {
+        return None;
     }
     let mut stores: Vec<(Place, Repr, [Option<ValueId>; 2])> = Vec::new();
     let mut cost = 0;

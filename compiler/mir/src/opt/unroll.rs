@@ -53,9 +53,7 @@ pub fn run(func: &mut Func) {
         if !gone {
             break;
         }
-        super::clean::run(func);
-        super::fold::run(func);
-        super::clean::run(func);
+        super::tidy(func);
     }
 }
 

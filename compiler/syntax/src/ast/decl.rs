@@ -88,6 +88,23 @@ pub enum SectionKind {
     Access,
 }
 
+impl SectionKind {
+    /// The keyword that opens it.
+    pub fn keyword(self) -> &'static str {
+        match self {
+            SectionKind::Var => "VAR",
+            SectionKind::Input => "VAR_INPUT",
+            SectionKind::Output => "VAR_OUTPUT",
+            SectionKind::InOut => "VAR_IN_OUT",
+            SectionKind::External => "VAR_EXTERNAL",
+            SectionKind::Global => "VAR_GLOBAL",
+            SectionKind::Temp => "VAR_TEMP",
+            SectionKind::Config => "VAR_CONFIG",
+            SectionKind::Access => "VAR_ACCESS",
+        }
+    }
+}
+
 /// Words behind a section keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]

@@ -146,17 +146,7 @@ impl Writer<'_> {
     // ---- Declarations ----
 
     fn section(&mut self, section: &VarSection) {
-        let word = match section.kind {
-            SectionKind::Var => "VAR",
-            SectionKind::Input => "VAR_INPUT",
-            SectionKind::Output => "VAR_OUTPUT",
-            SectionKind::InOut => "VAR_IN_OUT",
-            SectionKind::External => "VAR_EXTERNAL",
-            SectionKind::Global => "VAR_GLOBAL",
-            SectionKind::Temp => "VAR_TEMP",
-            SectionKind::Config => "VAR_CONFIG",
-            SectionKind::Access => "VAR_ACCESS",
-        };
+        let word = section.kind.keyword();
         if section.vars.is_empty() {
             return;
         }

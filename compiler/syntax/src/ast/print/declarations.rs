@@ -29,17 +29,7 @@ impl Printer {
     }
 
     pub(super) fn section(&mut self, section: &VarSection) {
-        let mut head = String::from(match section.kind {
-            SectionKind::Var => "VAR",
-            SectionKind::Input => "VAR_INPUT",
-            SectionKind::Output => "VAR_OUTPUT",
-            SectionKind::InOut => "VAR_IN_OUT",
-            SectionKind::External => "VAR_EXTERNAL",
-            SectionKind::Global => "VAR_GLOBAL",
-            SectionKind::Temp => "VAR_TEMP",
-            SectionKind::Config => "VAR_CONFIG",
-            SectionKind::Access => "VAR_ACCESS",
-        });
+        let mut head = String::from(section.kind.keyword());
         for (qualifier, _) in &section.qualifiers {
             head.push_str(&format!(" {}", qualifier_text(*qualifier)));
         }
