@@ -72,7 +72,11 @@ fn interpreter_and_jit_agree() {
         match both_engines(&text, seed % 2 == 0) {
             Ok(Outcome::Finished) => (1, 0),
             Ok(Outcome::Fault) => (0, 1),
-            Err(e) => panic!("seed {seed}: {e}\n{text}"),
+            Err(e) => {
+                // Which pass it is, and the smallest program that shows it.
+                passes::judge(seed, &text);
+                panic!("seed {seed}: {e}\n{text}")
+            }
         }
     });
     let finished: u64 = totals.iter().map(|t| t.0).sum();

@@ -239,15 +239,29 @@ impl FuncLower<'_, '_> {
         true
     }
 
+    /// Copies a string to where nothing is defined yet; the two do not overlap. What is left over there from something else
+    /// must not be seen behind the string's end.
+    pub fn copy_text_whole(&mut self, to: &Text, from: &Text) {
+        if self.block_bytes(to, from) != to.bytes().map(|n| n as u32 - to.unit_bytes())
+            && let Some(bytes) = to.bytes()
+        {
+            self.b.zero(to.place.clone(), bytes as u32);
+        }
+        self.copy_text(to, from);
+    }
+
+    /// Bytes of characters that are copied without a look for the string's end; `None` if it must be looked for.
+    fn block_bytes(&self, to: &Text, from: &Text) -> Option<u32> {
+        let bytes = to.known()?.min(from.known()?).checked_mul(to.unit_bytes())?;
+        (bytes <= INLINE_BYTES && !from.left_over).then_some(bytes)
+    }
+
     /// Copies a string and cuts it at the capacity. The two may be the same or overlap.
     pub fn copy_text(&mut self, to: &Text, from: &Text) {
         if to.place == from.place && to.known().is_some_and(|n| from.known() == Some(n)) {
             return;
         }
-        if let (Some(room), Some(capacity), false) = (to.known(), from.known(), from.left_over)
-            && let Some(bytes) = room.min(capacity).checked_mul(to.unit_bytes())
-            && bytes <= INLINE_BYTES
-        {
+        if let Some(bytes) = self.block_bytes(to, from) {
             // It ends at its first 0, wherever that is: all characters that both can hold, and a 0 behind them.
             self.b.copy(to.place.clone(), from.place.clone(), bytes);
             let end = self.b.number(unit_repr(to.wide), 0);
