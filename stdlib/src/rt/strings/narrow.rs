@@ -14,36 +14,35 @@ fn byte(marks: u64) -> usize {
     marks.trailing_zeros() as usize / 8
 }
 
+#[inline(always)]
 fn word(bytes: &[u8], at: usize) -> Option<u64> {
     bytes.get(at..)?.first_chunk().map(|word| u64::from_le_bytes(*word))
 }
 
-/// Where a byte is for the first time before the first 0; and where the walk ended otherwise: at a 0 or the end.
-fn walk(bytes: &[u8], wanted: u8) -> Result<usize, usize> {
+/// Where the first of two bytes is, one of which is 0; the length of the slice if none is.
+#[inline(always)]
+fn walk(bytes: &[u8], wanted: u8) -> usize {
     let pattern = LOW * u64::from(wanted);
-    let mut at = 0;
-    while let Some(word) = word(bytes, at) {
-        let marks = zeros(word) | zeros(word ^ pattern);
+    let (words, rest) = bytes.as_chunks::<8>();
+    for (n, word) in words.iter().enumerate() {
+        let word = u64::from_le_bytes(*word);
+        let marks = if wanted == 0 { zeros(word) } else { zeros(word) | zeros(word ^ pattern) };
         if marks != 0 {
-            let at = at + byte(marks);
-            return if bytes[at] == 0 { Err(at) } else { Ok(at) };
+            return 8 * n + byte(marks);
         }
-        at += 8;
     }
-    let rest = &bytes[at..];
-    match rest.iter().position(|b| *b == 0 || *b == wanted) {
-        Some(n) if rest[n] == 0 => Err(at + n),
-        Some(n) => Ok(at + n),
-        None => Err(bytes.len()),
-    }
+    let found = rest.iter().position(|b| *b == 0 || *b == wanted);
+    bytes.len() - rest.len() + found.unwrap_or(rest.len())
 }
 
 /// How many bytes there are before the first 0.
+#[inline(always)]
 pub fn before_zero(bytes: &[u8]) -> usize {
-    walk(bytes, 0).unwrap_or_else(|end| end)
+    walk(bytes, 0)
 }
 
 /// The order of two texts that end at their first 0 or with their slice.
+#[inline(always)]
 pub fn compare(a: &[u8], b: &[u8]) -> Ordering {
     let mut at = 0;
     while let (Some(x), Some(y)) = (word(a, at), word(b, at)) {
@@ -66,17 +65,21 @@ pub fn compare(a: &[u8], b: &[u8]) -> Ordering {
 }
 
 /// Where a text that is not empty begins in another; both end at their first 0 or with their slice.
+#[inline(always)]
 pub fn find(text: &[u8], wanted: &[u8]) -> Option<usize> {
     let (first, rest) = wanted.split_first()?;
-    let rest = &rest[..before_zero(rest)];
     if *first == 0 {
         return None;
     }
+    let rest = &rest[..before_zero(rest)];
     let mut start = 0;
     loop {
-        let at = start + walk(&text[start..], *first).ok()?;
+        let at = start + walk(&text[start..], *first);
+        if text.get(at) != Some(first) {
+            return None;
+        }
         // What is found has no 0 in it, so that the end needs no look.
-        if text[at + 1..].starts_with(rest) {
+        if rest.is_empty() || text[at + 1..].starts_with(rest) {
             return Some(at);
         }
         start = at + 1;
@@ -84,6 +87,7 @@ pub fn find(text: &[u8], wanted: &[u8]) -> Option<usize> {
 }
 
 /// Moves bytes up to the first 0, at most `limit`, to a place in front of them or apart from them; how many these were.
+#[inline(always)]
 pub fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
     let mut done = 0;
     while done < limit {
@@ -107,7 +111,9 @@ pub fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
 }
 
 /// Writes the first `count` bytes of a word; FALSE if there is no room.
+#[inline(always)]
 fn piece(mem: &mut [u8], to: usize, word: u64, count: usize) -> bool {
+    #[inline(always)]
     fn set<const N: usize>(target: &mut [u8], at: usize, bytes: [u8; N]) {
         if let Some(target) = target.get_mut(at..).and_then(|t| t.first_chunk_mut()) {
             *target = bytes;
