@@ -55,6 +55,16 @@ pub struct TextFn {
     pub address: fn() -> *const u8,
 }
 
+impl TextFn {
+    /// Bytes of a character of one of its strings.
+    pub fn unit_bytes(&self, text: usize) -> u32 {
+        let wide = self.symbol.starts_with("plcc_wstring_");
+        // The conversion between the two kinds reads the other one.
+        let other = text == 1 && [STRING.recode.symbol, WSTRING.recode.symbol].contains(&self.symbol);
+        if wide != other { 2 } else { 1 }
+    }
+}
+
 /// The bodies for one kind of string.
 #[derive(Debug)]
 pub struct TextFns {
