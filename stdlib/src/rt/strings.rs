@@ -261,12 +261,6 @@ fn number(raw: u64) -> usize {
     usize::try_from((raw as i64).max(0)).unwrap_or(usize::MAX)
 }
 
-/// The start of the characters from position P on, and behind L of them; `None` if P is outside.
-fn part(length: usize, l: u64, p: u64) -> Option<(usize, usize)> {
-    let start = number(p).checked_sub(1).filter(|start| *start < length)?;
-    Some((start, start + number(l).min(length - start)))
-}
-
 fn len<U: Unit>(mem: &mut [u8], [a]: [Text; 1], _: [u64; 0]) -> u64 {
     count::<U>(&characters::<U>(mem, a)).min(INT_MAX) as u64
 }
@@ -289,51 +283,73 @@ fn right<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
     put::<U>(mem, dst, 0, from::<U>(&a, skip)) as u64
 }
 
+/// A string without its first `n` characters, which it has.
+fn behind_first<U: Unit>(text: Text, n: usize) -> Text {
+    Text { at: text.at + (n * U::BYTES) as u32, capacity: text.capacity - n as u32 }
+}
+
+/// Where a part of a string lies: from position P on L characters, or what there is of them. `None` if P is outside.
+struct Part {
+    start: usize,
+    end: usize,
+    /// The string goes on behind it.
+    more: bool,
+}
+
+impl Part {
+    fn new<U: Unit>(mem: &[u8], text: Text, l: u64, p: u64) -> Option<Self> {
+        let all = extent::<U>(mem, text);
+        let room = count::<U>(&all);
+        let start = number(p).checked_sub(1).filter(|start| *start < room)?;
+        let end = start.saturating_add(number(l)).min(room);
+        // Not further than is needed to know that.
+        let looked_at = end.max(start + 1);
+        let head = U::before_zero(&mem[first::<U>(&all, looked_at)]);
+        (start < head).then_some(Self { start, end: end.min(head), more: head == looked_at })
+    }
+}
+
 fn mid<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l, p]: [u64; 2]) -> u64 {
-    let a = characters::<U>(mem, a);
-    let (start, end) = part(count::<U>(&a), l, p).unwrap_or((0, 0));
-    let middle = from::<U>(&first::<U>(&a, end), start);
-    put::<U>(mem, dst, 0, middle) as u64
+    match Part::new::<U>(mem, a, 0, p) {
+        Some(part) => put_first::<U>(mem, dst, 0, behind_first::<U>(a, part.start), number(l)) as u64,
+        None => put_first::<U>(mem, dst, 0, a, 0) as u64,
+    }
 }
 
 fn insert<U: Unit>(mem: &mut [u8], [dst, a, b]: [Text; 3], [p]: [u64; 1]) -> u64 {
-    let (a, b) = (characters::<U>(mem, a), characters::<U>(mem, b));
     let p = number(p);
-    if p > count::<U>(&a) {
-        return put::<U>(mem, dst, 0, a) as u64;
+    let all = extent::<U>(mem, a);
+    if p > count::<U>(&all) || U::before_zero(&mem[first::<U>(&all, p)]) < p {
+        return put_first::<U>(mem, dst, 0, a, usize::MAX) as u64;
     }
-    splice::<U>(mem, dst, a, (p, p), Some(b))
+    splice::<U>(mem, dst, a, Part { start: p, end: p, more: true }, Some(b))
 }
 
 fn delete<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l, p]: [u64; 2]) -> u64 {
-    let a = characters::<U>(mem, a);
-    match part(count::<U>(&a), l, p) {
-        Some((start, end)) if start < end => splice::<U>(mem, dst, a, (start, end), None),
-        _ => put::<U>(mem, dst, 0, a) as u64,
+    match Part::new::<U>(mem, a, l, p) {
+        Some(part) if part.start < part.end => splice::<U>(mem, dst, a, part, None),
+        _ => put_first::<U>(mem, dst, 0, a, usize::MAX) as u64,
     }
 }
 
 fn replace<U: Unit>(mem: &mut [u8], [dst, a, b]: [Text; 3], [l, p]: [u64; 2]) -> u64 {
-    let (a, b) = (characters::<U>(mem, a), characters::<U>(mem, b));
-    match part(count::<U>(&a), l, p) {
-        Some(out) => splice::<U>(mem, dst, a, out, Some(b)),
-        None => put::<U>(mem, dst, 0, a) as u64,
+    match Part::new::<U>(mem, a, l, p) {
+        Some(part) => splice::<U>(mem, dst, a, part, Some(b)),
+        None => put_first::<U>(mem, dst, 0, a, usize::MAX) as u64,
     }
 }
 
-/// `a` with other characters in place of those from `start` up to `end`.
-fn splice<U: Unit>(
-    mem: &mut [u8],
-    dst: Text,
-    a: Range<usize>,
-    (start, end): (usize, usize),
-    new: Option<Range<usize>>,
-) -> u64 {
-    let mut n = put::<U>(mem, dst, 0, first::<U>(&a, start));
+/// `a` with other characters in place of a part.
+fn splice<U: Unit>(mem: &mut [u8], dst: Text, a: Text, part: Part, new: Option<Text>) -> u64 {
+    let all = extent::<U>(mem, a);
+    let mut n = put::<U>(mem, dst, 0, first::<U>(&all, part.start));
     if let Some(new) = new {
-        n = put::<U>(mem, dst, n, new);
+        n = put_first::<U>(mem, dst, n, new, usize::MAX);
     }
-    put::<U>(mem, dst, n, from::<U>(&a, end)) as u64
+    if part.more {
+        n = put_first::<U>(mem, dst, n, behind_first::<U>(a, part.end), usize::MAX);
+    }
+    n as u64
 }
 
 /// The position of the first occurrence; 0 if there is none, and for an empty text.
