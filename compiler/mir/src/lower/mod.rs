@@ -22,6 +22,7 @@ mod stmt;
 mod string;
 mod task;
 mod text;
+mod text_ops;
 
 use crate::ir::{FuncId, Program, Source, SourceId};
 use crate::layout::{Layout, TooLarge};

@@ -1,27 +1,23 @@
-//! Strings (semantics.md \[T8\] \[N2\]): where the string of an expression lies, and the operations on them.
+//! Strings (semantics.md \[T8\]): where the string of an expression lies, and copies; operations are in `text_ops`.
 //!
 //! A string is a place with a capacity. One that an operation gives is built where it is to go, if that place overlaps no
 //! operand for certain; else in a temporary of the frame, from which it is copied. Bodies are in `stdlib::rt::strings`.
 
 use super::func::FuncLower;
 use super::place::Access;
-use crate::ir::{Base, IndexTerm, Place, TextPlace, ValueId};
+use super::text_ops::texts;
+use crate::ir::{Base, Place, ValueId};
 use plcc_diag::bug;
 use plcc_hir::body::{Expr, ExprKind};
 use plcc_hir::{Defs, Type, TypeId};
-use plcc_stdlib::elem::Elem;
 use plcc_stdlib::funcs::TextOp;
-use plcc_stdlib::ops::Op;
 use plcc_stdlib::prim::{PrimOp, Repr};
-use plcc_stdlib::rt::strings::{TextFn, TextFns};
+use plcc_stdlib::rt::strings::TextFns;
 use plcc_stdlib::value::longest_text;
 use std::rc::Rc;
 
 /// Strings of at most so many bytes are copied by their capacity, without looking for their end.
 const INLINE_BYTES: u32 = 128;
-
-/// Constants of at most so many bytes, the closing 0 with them, stand in the code.
-const SHORT_BYTES: u32 = 16;
 
 /// No operation gives a longer string.
 const LONGEST: u32 = 1 << 20;
@@ -31,20 +27,20 @@ const LONGEST: u32 = 1 << 20;
 pub(super) struct Text {
     pub place: Place,
     pub wide: bool,
-    capacity: Capacity,
+    pub(super) capacity: Capacity,
     /// Nothing but this expression knows it: a constant, or a temporary.
-    own: bool,
+    pub(super) own: bool,
     /// What lies behind its end is left over from something else. A program can look there (by subscript, UNION or pointer),
     /// so that it must not get into a variable: what a temporary held before depends on where frames lie.
-    left_over: bool,
+    pub(super) left_over: bool,
     /// One of several that SEL and its kind chose at run time, maybe of the own frame.
-    chosen: bool,
+    pub(super) chosen: bool,
     /// The bytes in front of the first 0 of a constant.
-    constant: Option<Rc<[u8]>>,
+    pub(super) constant: Option<Rc<[u8]>>,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Capacity {
+pub(super) enum Capacity {
     Known(u32),
     /// Known at run time only, I32.
     Carried(ValueId),
@@ -65,7 +61,7 @@ impl Text {
     }
 
     /// Bytes that it takes, the closing 0 included.
-    fn bytes(&self) -> Option<u64> {
+    pub(super) fn bytes(&self) -> Option<u64> {
         self.known().map(|n| (u64::from(n) + 1) * u64::from(self.unit_bytes()))
     }
 }
@@ -127,7 +123,15 @@ impl FuncLower<'_, '_> {
             },
             _ => return None,
         };
-        Some(Text { place: access.place.clone(), wide, capacity, own: false, left_over: false, chosen: false, constant: None })
+        Some(Text {
+            place: access.place.clone(),
+            wide,
+            capacity,
+            own: false,
+            left_over: false,
+            chosen: false,
+            constant: None,
+        })
     }
 
     /// The inverse of [`FuncLower::text_at`], for a type of strings.
@@ -158,9 +162,7 @@ impl FuncLower<'_, '_> {
             }
             ExprKind::Retype(inner) => self.text(inner),
             ExprKind::String(s) => self.constant_text(s.clone(), false),
-            ExprKind::WString(s) => {
-                self.constant_text(s.iter().flat_map(|unit| unit.to_le_bytes()).collect(), true)
-            }
+            ExprKind::WString(s) => self.constant_text(s.iter().flat_map(|unit| unit.to_le_bytes()).collect(), true),
             ExprKind::Call(call) => {
                 let (wide, capacity) = self.string_type(expr.ty);
                 let temp = self.text_temp(wide, capacity);
@@ -242,78 +244,6 @@ impl FuncLower<'_, '_> {
         self.copy_text(to, &temp);
     }
 
-    /// `s := CONCAT(s, ...)`: the others go behind what is there. FALSE if that is not what it is.
-    fn append(&mut self, pieces: &[Piece], to: &Text) -> bool {
-        let Some((Piece::Text(first), rest)) = pieces.split_first() else { return false };
-        // LEN tells no greater length.
-        let short = to.known().is_some_and(|capacity| capacity <= i16::MAX as u32);
-        if !same(first, to) || !short || !texts(rest).all(|text| disjoint(to, text)) {
-            return false;
-        }
-        let end = self.call_text(&TextFns::of(to.wide).len, &[to], &[]);
-        self.concat(rest, to, Some(end));
-        true
-    }
-
-    /// Puts pieces one behind the other, behind the first `end` characters of a string (which has them).
-    fn concat(&mut self, pieces: &[Piece], to: &Text, end: Option<ValueId>) {
-        let fns = TextFns::of(to.wide);
-        let mut end = end;
-        for piece in pieces {
-            end = Some(match piece {
-                Piece::Text(text) => self.put(to, text, end),
-                Piece::Number(value, elem) => {
-                    let raw = self.register_of(*value);
-                    let code = self.b.number(Repr::I64, u64::from(elem.code()));
-                    let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
-                    self.call_text(&fns.write, &[to], &[start, raw, code])
-                }
-            });
-        }
-    }
-
-    /// Puts a string behind the first characters of another, none if `end` is; gives the new length.
-    fn put(&mut self, to: &Text, text: &Text, end: Option<ValueId>) -> ValueId {
-        let unit = to.unit_bytes();
-        let short = text.constant.clone().filter(|bytes| bytes.len() as u32 + unit <= SHORT_BYTES);
-        let fits = |bytes: &[u8]| to.known()?.checked_sub(bytes.len() as u32 / unit);
-        let Some((bytes, last)) = short.and_then(|bytes| Some((bytes.clone(), fits(&bytes)?))) else {
-            let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
-            return self.call_text(&TextFns::of(to.wide).put, &[to, text], &[start]);
-        };
-        let length = u64::from(bytes.len() as u32 / unit);
-        let closed = [&bytes, &[0, 0][..unit as usize]].concat();
-        let Some(end) = end else {
-            self.store_bytes(&to.place, &closed);
-            return self.b.number(Repr::I64, length);
-        };
-        // Few are cut: the characters are in the code.
-        let limit = self.b.number(Repr::I64, u64::from(last));
-        let whole = self.b.op(PrimOp::LeS, Repr::I64, &[end, limit]);
-        let (fit, cut, done) = (self.b.block(), self.b.block(), self.b.block());
-        let result = self.b.block_param(done, Repr::I64);
-        self.b.branch(whole, fit, cut);
-        self.b.switch_to(fit);
-        let mut place = to.place.clone();
-        place.index.push(IndexTerm { value: end, stride: unit, low: 0, high: i64::from(last) });
-        self.store_bytes(&place, &closed);
-        let length = self.b.number(Repr::I64, length);
-        let sum = self.b.op(PrimOp::Add, Repr::I64, &[end, length]);
-        self.b.jump(done, &[sum]);
-        self.b.switch_to(cut);
-        let sum = self.call_text(&TextFns::of(to.wide).put, &[to, text], &[end]);
-        self.b.jump(done, &[sum]);
-        self.b.switch_to(done);
-        result
-    }
-
-    fn store_bytes(&mut self, place: &Place, bytes: &[u8]) {
-        for (at, repr, raw) in words(bytes) {
-            let value = self.b.number(repr, raw);
-            self.b.store(place.clone().plus(at), value);
-        }
-    }
-
     /// Copies a string to where nothing is defined yet; the two do not overlap. What is left over there from something else
     /// must not be seen behind the string's end.
     pub fn copy_text_whole(&mut self, to: &Text, from: &Text) {
@@ -346,197 +276,6 @@ impl FuncLower<'_, '_> {
         self.call_text(&TextFns::of(to.wide).put, &[to, from], &[start]);
     }
 
-    /// An operation on strings that gives an elementary value.
-    pub fn text_value(&mut self, op: TextOp, wide: bool, args: &[Expr], expr: &Expr) -> ValueId {
-        let fns = TextFns::of(wide);
-        let operands = self.operands(args);
-        self.at(expr.span, "");
-        match op {
-            TextOp::Len => {
-                let length = self.call_text(&fns.len, &operands.refs(), &[]);
-                self.b.resize(length, true, Elem::Int.repr())
-            }
-            TextOp::Find => {
-                let position = self.call_text(&fns.find, &operands.refs(), &[]);
-                self.b.resize(position, true, Elem::Int.repr())
-            }
-            TextOp::Read(elem) => {
-                let code = self.b.number(Repr::I64, u64::from(elem.code()));
-                let raw = self.call_text(&fns.read, &operands.refs(), &[code]);
-                self.of_register(raw, elem)
-            }
-            TextOp::Compare(op) => {
-                let mut all: Option<ValueId> = None;
-                for pair in operands.texts.windows(2) {
-                    let holds = self.compare(op, &pair[0], &pair[1]);
-                    all = Some(match all {
-                        Some(before) => self.b.op(PrimOp::And, Repr::I8, &[before, holds]),
-                        None => holds,
-                    });
-                }
-                all.unwrap_or_else(|| bug!("a comparison of one"))
-            }
-            _ => bug!("{op:?} as a scalar"),
-        }
-    }
-
-    fn compare(&mut self, op: Op, a: &Text, b: &Text) -> ValueId {
-        if let Op::Eq | Op::Ne = op
-            && let Some(equal) = self.equals_constant(a, b).or_else(|| self.equals_constant(b, a))
-        {
-            return if op == Op::Eq { equal } else { self.b.not(equal) };
-        }
-        let order = self.call_text(&TextFns::of(a.wide).compare, &[a, b], &[]);
-        let zero = self.b.number(Repr::I64, 0);
-        let (prim, sides) = match op {
-            Op::Eq => (PrimOp::Eq, [order, zero]),
-            Op::Ne => (PrimOp::Ne, [order, zero]),
-            Op::Lt => (PrimOp::LtS, [order, zero]),
-            Op::Le => (PrimOp::LeS, [order, zero]),
-            Op::Gt => (PrimOp::LtS, [zero, order]),
-            _ => (PrimOp::LeS, [zero, order]),
-        };
-        self.b.op(prim, Repr::I64, &sides)
-    }
-
-    /// Whether a string is a short constant: its bytes are compared at once.
-    fn equals_constant(&mut self, text: &Text, constant: &Text) -> Option<ValueId> {
-        let (bytes, unit) = (constant.constant.clone()?, text.unit_bytes());
-        let room = text.known()? * unit;
-        if bytes.len() as u32 > room {
-            return Some(self.b.number(Repr::I8, 0));
-        }
-        // A string that is full ends there.
-        let end: &[u8] = if bytes.len() as u32 == room { &[] } else { &[0, 0][..unit as usize] };
-        let bytes = [&bytes, end].concat();
-        if bytes.len() as u32 > SHORT_BYTES {
-            return None;
-        }
-        let mut all = None;
-        for (at, repr, raw) in words(&bytes) {
-            let there = self.b.load(repr, text.place.clone().plus(at), false);
-            let wanted = self.b.number(repr, raw);
-            let same = self.b.op(PrimOp::Eq, repr, &[there, wanted]);
-            all = Some(match all {
-                Some(before) => self.b.op(PrimOp::And, Repr::I8, &[before, same]),
-                None => same,
-            });
-        }
-        Some(all.unwrap_or_else(|| self.b.number(Repr::I8, 1)))
-    }
-
-    /// What CONCAT joins, evaluated; a value that becomes text is written where it is to go.
-    fn pieces(&mut self, args: &[Expr]) -> Vec<Piece> {
-        let mut pieces = Vec::with_capacity(args.len());
-        for (n, arg) in args.iter().enumerate() {
-            pieces.push(match &arg.kind {
-                ExprKind::Text { op: TextOp::Write(elem), args: value, .. } => {
-                    Piece::Number(self.value(&value[0]), *elem)
-                }
-                _ => Piece::Text(self.operand(arg, &args[n + 1..])),
-            });
-        }
-        pieces
-    }
-
-    /// A string that is an argument, copied if a later argument's call could change it.
-    fn operand(&mut self, arg: &Expr, later: &[Expr]) -> Text {
-        if later.iter().any(Expr::calls) { self.lasting_text(arg) } else { self.text(arg) }
-    }
-
-    /// All arguments, from left to right; a string that a later argument's call could change is copied.
-    fn operands(&mut self, args: &[Expr]) -> Operands {
-        let mut operands = Operands::default();
-        for (n, arg) in args.iter().enumerate() {
-            if !self.is_text(arg.ty) {
-                operands.values.push(self.value(arg));
-                continue;
-            }
-            let text = self.operand(arg, &args[n + 1..]);
-            operands.texts.push(text);
-        }
-        operands
-    }
-
-    /// The argument that a selection gives; `None` for what builds a new string.
-    fn chosen(&mut self, op: TextOp, operands: &Operands) -> Option<Text> {
-        let texts = &operands.texts;
-        match (op, texts.as_slice(), operands.values.as_slice()) {
-            (TextOp::Sel, [a, b], [second]) => Some(self.select(*second, b, a)),
-            (TextOp::Mux, [others @ .., last], [k]) => {
-                let mut chosen = last.clone();
-                for (n, text) in others.iter().enumerate().rev() {
-                    let number = self.b.number(Repr::I64, n as u64);
-                    let this = self.b.op(PrimOp::Eq, Repr::I64, &[*k, number]);
-                    chosen = self.select(this, text, &chosen);
-                }
-                Some(chosen)
-            }
-            (TextOp::Limit, [low, value, high], _) => {
-                let value = self.better(Op::Lt, value, low);
-                Some(self.better(Op::Gt, &value, high))
-            }
-            (TextOp::Max | TextOp::Min, [first, rest @ ..], _) => {
-                let beyond = if op == TextOp::Max { Op::Lt } else { Op::Gt };
-                Some(rest.iter().fold(first.clone(), |best, text| self.better(beyond, &best, text)))
-            }
-            _ => None,
-        }
-    }
-
-    /// `other` if `best op other`, else `best`.
-    fn better(&mut self, op: Op, best: &Text, other: &Text) -> Text {
-        let take = self.compare(op, best, other);
-        self.select(take, other, best)
-    }
-
-    /// One of two strings, by reference.
-    fn select(&mut self, cond: ValueId, yes: &Text, no: &Text) -> Text {
-        let (a, b) = (self.offset_of(yes), self.offset_of(no));
-        let at = self.b.op(PrimOp::Select, Repr::I32, &[cond, a, b]);
-        let (a, b) = (self.capacity(yes), self.capacity(no));
-        let capacity = self.b.op(PrimOp::Select, Repr::I32, &[cond, a, b]);
-        Text {
-            place: Place::new(Base::Reference(at), 0),
-            wide: yes.wide,
-            capacity: Capacity::Carried(capacity),
-            own: yes.own && no.own,
-            left_over: yes.left_over || no.left_over,
-            chosen: true,
-            constant: None,
-        }
-    }
-
-    /// Builds a string in a place that overlaps no operand.
-    fn build(&mut self, op: TextOp, operands: &Operands, to: &Text) {
-        let fns = TextFns::of(to.wide);
-        let f = match op {
-            TextOp::Write(elem) => {
-                let raw = self.register_of(operands.values[0]);
-                let code = self.b.number(Repr::I64, u64::from(elem.code()));
-                let start = self.b.number(Repr::I64, 0);
-                self.call_text(&fns.write, &[to], &[start, raw, code]);
-                return;
-            }
-            TextOp::Left => &fns.left,
-            TextOp::Right => &fns.right,
-            TextOp::Mid => &fns.mid,
-            TextOp::Insert => &fns.insert,
-            TextOp::Delete => &fns.delete,
-            TextOp::Replace => &fns.replace,
-            TextOp::Recode => &fns.recode,
-            _ => bug!("{op:?} builds no string"),
-        };
-        let texts: Vec<&Text> = std::iter::once(to).chain(&operands.texts).collect();
-        self.call_text(f, &texts, &operands.values);
-    }
-
-    fn call_text(&mut self, f: &'static TextFn, texts: &[&Text], values: &[ValueId]) -> ValueId {
-        let places: Vec<TextPlace> =
-            texts.iter().map(|text| TextPlace { place: text.place.clone(), capacity: self.capacity(text) }).collect();
-        self.b.call_text(f, &places, values)
-    }
-
     /// A string of the frame that lasts to the end of the statement.
     fn text_temp(&mut self, wide: bool, capacity: u32) -> Text {
         let unit = if wide { 2 } else { 1 };
@@ -546,7 +285,15 @@ impl FuncLower<'_, '_> {
             self.text_temps.rooms.push((place.clone(), bytes, true));
             place
         });
-        Text { place, wide, capacity: Capacity::Known(capacity), own: true, left_over: true, chosen: false, constant: None }
+        Text {
+            place,
+            wide,
+            capacity: Capacity::Known(capacity),
+            own: true,
+            left_over: true,
+            chosen: false,
+            constant: None,
+        }
     }
 
     /// A constant in memory.
@@ -597,7 +344,7 @@ impl FuncLower<'_, '_> {
         }
     }
 
-    fn offset_of(&mut self, text: &Text) -> ValueId {
+    pub(super) fn offset_of(&mut self, text: &Text) -> ValueId {
         match (text.place.base, text.place.offset, text.place.index.is_empty()) {
             (Base::Reference(value), 0, true) => value,
             _ => {
@@ -616,83 +363,20 @@ impl FuncLower<'_, '_> {
         let above = self.b.op(PrimOp::Shl, Repr::I64, &[capacity, bits]);
         self.b.op(PrimOp::Or, Repr::I64, &[above, at])
     }
-
-    /// A value as a register holds it, zero-extended.
-    fn register_of(&mut self, value: ValueId) -> ValueId {
-        let value = match self.b.repr(value) {
-            repr @ (Repr::F32 | Repr::F64) => self.b.op(PrimOp::FBits, repr, &[value]),
-            _ => value,
-        };
-        self.b.resize(value, false, Repr::I64)
-    }
-
-    /// The value that a register holds.
-    fn of_register(&mut self, raw: ValueId, elem: Elem) -> ValueId {
-        match elem.repr() {
-            Repr::F64 => self.b.op(PrimOp::BitsF, Repr::I64, &[raw]),
-            Repr::F32 => {
-                let bits = self.b.resize(raw, false, Repr::I32);
-                self.b.op(PrimOp::BitsF, Repr::I32, &[bits])
-            }
-            repr => self.b.resize(raw, false, repr),
-        }
-    }
-}
-
-/// What CONCAT joins.
-#[derive(Debug)]
-enum Piece {
-    Text(Text),
-    /// The text of a value.
-    Number(ValueId, Elem),
-}
-
-fn texts(pieces: &[Piece]) -> impl Iterator<Item = &Text> {
-    pieces.iter().filter_map(|piece| match piece {
-        Piece::Text(text) => Some(text),
-        Piece::Number(..) => None,
-    })
-}
-
-/// Bytes cut into words, great ones first: offset, representation and register value.
-fn words(bytes: &[u8]) -> Vec<(u32, Repr, u64)> {
-    let mut words = Vec::new();
-    let mut at = 0;
-    for repr in [Repr::I64, Repr::I32, Repr::I16, Repr::I8] {
-        while let Some(word) = bytes[at..].get(..repr.bytes() as usize) {
-            let raw = word.iter().rev().fold(0, |raw, byte| raw << 8 | u64::from(*byte));
-            words.push((at as u32, repr, raw));
-            at += word.len();
-        }
-    }
-    words
 }
 
 /// Whether two are the same string.
-fn same(a: &Text, b: &Text) -> bool {
+pub(super) fn same(a: &Text, b: &Text) -> bool {
     a.place == b.place && a.known().is_some() && a.known() == b.known()
 }
 
-/// The evaluated arguments of an operation.
-#[derive(Debug, Default)]
-struct Operands {
-    texts: Vec<Text>,
-    values: Vec<ValueId>,
-}
-
-impl Operands {
-    fn refs(&self) -> Vec<&Text> {
-        self.texts.iter().collect()
-    }
-}
-
-fn unit_repr(wide: bool) -> Repr {
+pub(super) fn unit_repr(wide: bool) -> Repr {
     if wide { Repr::I16 } else { Repr::I8 }
 }
 
 /// Whether two strings share no byte for certain. The own frame is apart from everything else: what lies in it has no address
 /// that anyone else could hold while this function runs.
-fn disjoint(to: &Text, from: &Text) -> bool {
+pub(super) fn disjoint(to: &Text, from: &Text) -> bool {
     if from.own {
         return true;
     }

@@ -29,7 +29,8 @@ impl Equal {
     /// Where the bytes of a place came from, if all of them lie in the copy.
     fn origin(&self, place: &Place, bytes: i64) -> Option<Place> {
         let at = place.offset - self.copy.offset;
-        let inside = place.base == self.copy.base && place.index == self.copy.index && at >= 0 && at + bytes <= self.bytes;
+        let inside =
+            place.base == self.copy.base && place.index == self.copy.index && at >= 0 && at + bytes <= self.bytes;
         inside.then(|| Place { offset: self.original.offset + at, bit: place.bit, ..self.original.clone() })
     }
 }

@@ -157,7 +157,8 @@ fn cover(written: &[Written], place: &Place, bytes: i64) -> bool {
     let mut at = place.offset;
     while at < place.offset + bytes {
         // The one that reaches furthest of those that go on from here.
-        let next = written.iter().filter(whole).filter(|w| w.place.offset <= at).map(|w| w.place.offset + w.bytes).max();
+        let next =
+            written.iter().filter(whole).filter(|w| w.place.offset <= at).map(|w| w.place.offset + w.bytes).max();
         match next.filter(|end| *end > at) {
             Some(end) => at = end,
             None => return false,

@@ -86,9 +86,9 @@ pub fn run(func: &mut Func, alias: &Alias) {
             if let Inst::Load { dst, place, normalise } = &inst {
                 let repr = func.values[*dst];
                 let fresh = |k: &Known| clock - k.used < LIFETIME;
-                let found = known.iter().position(|k| {
-                    k.gives(place, repr, *normalise) && (fresh(k) || constants.get(k.value).is_some())
-                });
+                let found = known
+                    .iter()
+                    .position(|k| k.gives(place, repr, *normalise) && (fresh(k) || constants.get(k.value).is_some()));
                 if let Some(n) = found {
                     let one = Known { used: clock, ..known.remove(n) };
                     replace.set(*dst, one.value);
