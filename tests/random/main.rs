@@ -7,6 +7,7 @@
 
 mod generate;
 mod il;
+mod loops;
 mod passes;
 
 use plcc_hir::Profile;

@@ -1,7 +1,7 @@
 //! The optimiser: random ST and IL programs mean the same before and after every pass. A program that does not is made small
 //! and printed.
 
-use super::{deep, generate, il, setting, shared_out, source};
+use super::{deep, generate, il, loops, setting, shared_out, source};
 use plcc_hir::Profile;
 use plcc_mir::ir::{Inst, Program};
 use plcc_mir::opt::{Pass, passes};
@@ -43,6 +43,24 @@ fn passes_keep_the_meaning() {
     let faults = faults.iter().filter(|f| **f).count() as u64;
     println!("{count} programs, {faults} of them with a fault");
     assert!(count < 60 || (faults > 0 && faults < count * 3 / 4), "{faults} faults");
+}
+
+/// Few of a few hundred may not compile: an index that is a constant out of bounds is an error.
+#[test]
+fn passes_keep_the_meaning_of_loops() {
+    let (count, first) = (setting("RANDOM_PASSES", 80) * 2, setting("RANDOM_SEED", 1) + 4_000_000);
+    let outcomes = shared_out(first..first + count, |seed| {
+        let text = loops::program(seed);
+        outcome(&text, passes(), &RUN).map(|result| match result {
+            Ok(faults) => faults > 0,
+            Err(found) => panic!("seed {seed}, {found}\n{}", minimal(&text, passes(), &found)),
+        })
+    });
+    let ran = outcomes.iter().flatten().count() as u64;
+    let faults = outcomes.iter().flatten().filter(|f| **f).count() as u64;
+    println!("{ran} of {count} nests of loops, {faults} of them with a fault");
+    assert!(ran > count / 2, "{ran} of {count} compile");
+    assert!(count < 60 || (faults > 0 && faults < ran), "{faults} faults");
 }
 
 #[test]
