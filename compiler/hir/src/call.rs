@@ -31,6 +31,8 @@ pub(crate) enum Special {
     SizeOf,
     /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`.
     Bound { upper: bool },
+    /// `__ISVALIDREF(r)`.
+    IsValidRef,
 }
 
 /// What a call of a user's POU is given.
@@ -50,8 +52,14 @@ impl<'a> Arguments<'a> {
 }
 
 impl<'a> Checker<'_, 'a> {
-    /// A call as an operand: it must give a value.
+    /// A call as an operand: it must give a value. A REFERENCE TO is followed.
     pub fn call_operand(&mut self, call: &'a ast::Call, span: Span, want: Option<TypeId>) -> Operand {
+        let value = self.call_itself(call, span, want);
+        self.followed_value(value)
+    }
+
+    /// As [`Self::call_operand`], but a REFERENCE TO is the reference.
+    pub fn call_itself(&mut self, call: &'a ast::Call, span: Span, want: Option<TypeId>) -> Operand {
         match self.callee(&call.callee) {
             Target::Reported => {
                 self.check_arguments_alone(&call.args);
@@ -150,8 +158,8 @@ impl<'a> Checker<'_, 'a> {
         match found {
             Found::Var(var) => {
                 let ty = self.type_of_var(var);
-                if self.cx.instance_of(ty).is_some() {
-                    let place = Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span };
+                let place = self.followed(Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span });
+                if self.cx.instance_of(place.ty).is_some() {
                     return self.instance_callee(place);
                 }
                 if let Some(scope) = self.scope
@@ -192,6 +200,7 @@ impl<'a> Checker<'_, 'a> {
             "REF" => return Target::Special(Special::Reference { pointer: false }),
             "ADR" => return Target::Special(Special::Reference { pointer: true }),
             "SIZEOF" => return Target::Special(Special::SizeOf),
+            "__ISVALIDREF" => return Target::Special(Special::IsValidRef),
             "LOWER_BOUND" => return Target::Special(Special::Bound { upper: false }),
             "UPPER_BOUND" => return Target::Special(Special::Bound { upper: true }),
             _ => {}
@@ -493,7 +502,8 @@ impl<'a> Checker<'_, 'a> {
     fn pass(&mut self, param: VarId, e: &'a ast::Expr, out: &mut Call) -> bool {
         let ty = self.type_of_var(param);
         if self.cx.defs.vars[param].section == Section::InOut {
-            let Some(place) = self.place(e) else { return false };
+            let place = if self.is_reference_to(ty) { self.place_itself(e) } else { self.place(e) };
+            let Some(place) = place else { return false };
             if !self.in_out_fits(param, ty, &place) || !self.check_writable(&place) {
                 return false;
             }
@@ -504,7 +514,10 @@ impl<'a> Checker<'_, 'a> {
             out.in_outs.push((param, place));
             return passed;
         }
-        let value = self.operand(e, Some(ty));
+        let value = match self.is_reference_to(ty) {
+            true => Operand::Value { expr: self.value(e, ty), ty },
+            false => self.operand(e, Some(ty)),
+        };
         self.pass_value(param, value, e.span, out)
     }
 
@@ -548,20 +561,16 @@ impl<'a> Checker<'_, 'a> {
             return true;
         }
         let types = &self.cx.defs.types;
-        let lax = match (types.get(ty).clone(), types.get(place.ty).clone()) {
+        match (types.get(ty).clone(), types.get(place.ty).clone()) {
             (Type::AnyString { wide: a }, Type::String { wide: b, .. } | Type::AnyString { wide: b }) if a == b => {
                 return true;
             }
             (Type::AnyArray { dims, elem }, Type::Array { dims: d, elem: e }) if dims == d.len() && elem == e => {
                 return true;
             }
-            (Type::String { wide: a, capacity: m }, Type::String { wide: b, capacity: n }) => a == b && n >= m,
-            (Type::Array { dims: a, elem: x }, Type::Array { dims: b, elem: y }) => {
-                let count = |d: &[(i64, i64)]| d.iter().map(|(l, h)| h - l + 1).product::<i64>();
-                x == y && count(&a) == count(&b)
-            }
-            _ => false,
-        };
+            _ => {}
+        }
+        let lax = self.similar_memory(ty, place.ty);
         let (want, have) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
         let (name, span) = (self.cx.defs.vars[param].name.clone(), self.cx.defs.vars[param].span);
         let d = Diagnostic::new(
@@ -582,10 +591,24 @@ impl<'a> Checker<'_, 'a> {
         false
     }
 
+    /// Whether a variable of type `have` can be used as one of type `want` in its memory (\[S4\] \[P2\], with a warning):
+    /// a longer string, an array with other bounds of equal length.
+    pub fn similar_memory(&self, want: TypeId, have: TypeId) -> bool {
+        let types = &self.cx.defs.types;
+        match (types.get(want), types.get(have)) {
+            (Type::String { wide: a, capacity: m }, Type::String { wide: b, capacity: n }) => a == b && n >= m,
+            (Type::Array { dims: a, elem: x }, Type::Array { dims: b, elem: y }) => {
+                let count = |d: &[(i64, i64)]| d.iter().map(|(l, h)| h - l + 1).product::<i64>();
+                x == y && count(a) == count(b)
+            }
+            _ => false,
+        }
+    }
+
     /// `output => target`.
     fn fetch(&mut self, param: VarId, negated: bool, target: &'a ast::Expr) -> Option<OutputArg> {
         let ty = self.type_of_var(param);
-        let place = self.place(target)?;
+        let place = if self.is_reference_to(ty) { self.place_itself(target) } else { self.place(target) }?;
         if !self.check_writable(&place) || ty == Types::ERROR {
             return None;
         }
@@ -632,11 +655,15 @@ impl<'a> Checker<'_, 'a> {
                     };
                     if strings(ty).is_none() || strings(ty) != strings(place.ty) {
                         let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
-                        self.report(Diagnostic::new(
-                            codes::TYPE_MISMATCH,
-                            target.span,
-                            format!("the output is {have}, this variable is {want}"),
-                        ));
+                        let followed = self.is_reference_to(ty).then_some("read it behind the call, `instance.output`");
+                        self.report(
+                            Diagnostic::new(
+                                codes::TYPE_MISMATCH,
+                                target.span,
+                                format!("the output is {have}, this variable is {want}"),
+                            )
+                            .help_if(followed.map(String::from)),
+                        );
                         return None;
                     }
                     None
@@ -668,6 +695,7 @@ impl<'a> Checker<'_, 'a> {
         match special {
             Special::Reference { pointer } => self.reference_to(pointer, call, span),
             Special::SizeOf => self.size_of(call, span),
+            Special::IsValidRef => self.is_valid_reference(call, span),
             Special::Bound { upper } => self.bound(upper, call, span),
         }
     }

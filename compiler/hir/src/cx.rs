@@ -242,9 +242,7 @@ pub fn type_name(defs: &Defs, ty: TypeId) -> String {
         Type::Enum(id) => defs.enums[*id].name.to_string(),
         Type::Subrange { base, low, high } => format!("{} ({low}..{high})", base.name()),
         Type::Instance(pou) => defs.pous[*pou].name.to_string(),
-        Type::Ref { pointer, target } => {
-            format!("{} {}", if *pointer { "POINTER TO" } else { "REF_TO" }, type_name(defs, *target))
-        }
+        Type::Ref { kind, target } => format!("{} {}", kind.keyword(), type_name(defs, *target)),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::defs::*;
 use crate::init::Init;
 use crate::place::Found;
 use crate::rules::{self, Implicit};
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::{Elem, Family};
 use plcc_stdlib::ops::Op;
@@ -76,8 +76,11 @@ impl<'c, 'a> Checker<'c, 'a> {
         self.cx.elem_of(ty)
     }
 
-    /// An expression where `want` is the type of its place.
+    /// An expression where `want` is the type of its place. A REFERENCE TO is bound to the variable that it names.
     pub fn value(&mut self, e: &'a ast::Expr, want: TypeId) -> Expr {
+        if self.is_reference_to(want) {
+            return self.reference_value(e, want);
+        }
         let operand = self.operand(e, Some(want));
         self.coerce(operand, e.span, want)
     }
@@ -347,6 +350,14 @@ impl<'c, 'a> Checker<'c, 'a> {
                     self.cx.defs.enums[*id].values.iter().take(6).map(|(n, _, _)| n.as_str()).collect();
                 d = d.help(format!("use one of its values: {}", names.join(", ")));
             }
+            (Type::Null, _) => {
+                d = d.help(
+                    "only a REF_TO or POINTER TO can be NULL; `r REF= NULL` lets a REFERENCE TO refer to nothing",
+                );
+            }
+            (_, Type::Ref { kind: RefKind::ReferenceTo, .. }) => {
+                d = d.help("a REFERENCE TO is given a variable of the type that it refers to");
+            }
             (Type::Instance(pou), _) => {
                 let outputs: Vec<&str> = self.cx.defs.pous[*pou]
                     .vars
@@ -375,7 +386,7 @@ impl<'c, 'a> Checker<'c, 'a> {
             return self.mismatch(number, Types::elem(Elem::Int), target);
         }
         let Some(elem) = self.elem_of(target) else {
-            if let Type::Ref { pointer: true, .. } = self.cx.defs.types.get(target)
+            if let Type::Ref { kind: RefKind::PointerTo, .. } = self.cx.defs.types.get(target)
                 && let Ok(offset) = u32::try_from(v)
             {
                 return constant(u64::from(offset), target);

@@ -58,7 +58,7 @@ pub use cx::{Unit, elem_of, similar, type_name};
 pub use cycles::calls_of;
 pub use defs::*;
 pub use init::Init;
-pub use types::{Type, TypeId, Types};
+pub use types::{RefKind, Type, TypeId, Types};
 
 use plcc_diag::Diagnostics;
 

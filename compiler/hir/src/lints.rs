@@ -55,8 +55,10 @@ impl Visitor for Uses {
         if how == Use::Read {
             return;
         }
-        // Whatever is called, referred to or connected may be written there.
-        if let Root::Var(var) = place.root {
+        // Whatever is called, referred to or connected may be written there; behind a reference another variable is.
+        let followed = place.steps.iter().any(|step| matches!(step, Step::Deref));
+        if let (Root::Var(var), false) = (&place.root, followed) {
+            let var = *var;
             self.written.insert(var);
         }
     }

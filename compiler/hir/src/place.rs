@@ -5,7 +5,7 @@ use crate::collect::charts;
 use crate::cx::*;
 use crate::defs::*;
 use crate::expr::*;
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
@@ -84,8 +84,14 @@ impl<'a> Checker<'_, 'a> {
         );
     }
 
-    /// A path to a variable or a part of one. Reports what is none.
+    /// A path to a variable or a part of one; a REFERENCE TO is followed. Reports what is none.
     pub fn place(&mut self, e: &'a ast::Expr) -> Option<Place> {
+        let place = self.place_itself(e)?;
+        Some(self.followed(place))
+    }
+
+    /// As [`Self::place`], but a REFERENCE TO is the variable that holds the reference.
+    pub fn place_itself(&mut self, e: &'a ast::Expr) -> Option<Place> {
         match &e.kind {
             ast::ExprKind::Name(name) => self.var_place(name),
             ast::ExprKind::Member(base, name) => {
@@ -101,12 +107,18 @@ impl<'a> Checker<'_, 'a> {
                 self.part(base, part, e.span)
             }
             ast::ExprKind::Deref(base) if is_place(base) => {
-                let base = self.place(base)?;
+                let base = self.place_itself(base)?;
                 self.deref(base, e.span)
             }
             ast::ExprKind::Deref(base) => self.deref_value(base, e.span),
             ast::ExprKind::Address(text) => self.direct_address(text, e.span),
             ast::ExprKind::Error => None,
+            ast::ExprKind::Call(call) if self.gives_reference(&call.callee) => {
+                match self.call_itself(call, e.span, None) {
+                    Operand::Value { expr, .. } => self.followed_root(expr),
+                    _ => None,
+                }
+            }
             _ => {
                 self.report(
                     Diagnostic::new(codes::NOT_A_VARIABLE, e.span, "a variable is needed here")
@@ -484,7 +496,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     fn deref(&mut self, mut base: Place, span: Span) -> Option<Place> {
-        let Type::Ref { target, .. } = *self.cx.defs.types.get(base.ty) else {
+        let Type::Ref { kind, target } = *self.cx.defs.types.get(base.ty) else {
             let ty = self.cx.type_name(base.ty);
             self.report(
                 Diagnostic::new(codes::NOT_A_REFERENCE, span, format!("{ty} cannot be followed with ^"))
@@ -492,6 +504,13 @@ impl<'a> Checker<'_, 'a> {
             );
             return None;
         };
+        if kind == RefKind::ReferenceTo {
+            self.report(
+                Diagnostic::new(codes::NOT_A_REFERENCE, span, "a REFERENCE TO is not followed with ^")
+                    .help("remove the ^: its name is the variable that it refers to"),
+            );
+            return None;
+        }
         if target == Types::ERROR {
             return None;
         }
@@ -573,13 +592,15 @@ impl<'a> Checker<'_, 'a> {
                     }
                 }
                 Step::Character { .. } => text.push_str("[...]"),
-                Step::Deref => {
-                    text.push('^');
-                    match self.cx.defs.types.get(ty) {
-                        Type::Ref { target, .. } => ty = *target,
-                        _ => return text,
+                Step::Deref => match self.cx.defs.types.get(ty) {
+                    Type::Ref { kind, target } => {
+                        if *kind != RefKind::ReferenceTo {
+                            text.push('^');
+                        }
+                        ty = *target;
                     }
-                }
+                    _ => return text,
+                },
                 Step::Bit(n) => text = format!("{text}.{n}"),
                 Step::Part(elem, n) => text = format!("{text}.%{}{n}", &elem.name()[..1]),
             }

@@ -292,6 +292,7 @@ impl Lexer<'_, '_, '_> {
             (b'=', b'>') => (Tok::Arrow, 2),
             (b'=', b'=') => return self.foreign(Tok::Eq, 2, "="),
             (b'=', b'<') => return self.foreign(Tok::Rel, 2, "<="),
+            (b'=', _) if self.behind_ref() => return self.bind(),
             (b'=', _) => (Tok::Eq, 1),
             (b'<', b'=' | b'>') | (b'>', b'=') => (Tok::Rel, 2),
             (b'<' | b'>', _) => (Tok::Rel, 1),
@@ -321,6 +322,28 @@ impl Lexer<'_, '_, '_> {
                 .help(format!("write `{meant}`")),
         );
         self.push(kind, length);
+    }
+
+    /// Whether the `=` here makes `REF=` of the word before it on the line: `REF` directly behind an operand or a type,
+    /// where no other name could stand.
+    fn behind_ref(&self) -> bool {
+        use Tok::*;
+        let [.., before, word] = self.out.tokens.as_slice() else { return false };
+        let text = &self.text[word.start as usize..word.end as usize];
+        word.kind == Id
+            && !self.first
+            && text.eq_ignore_ascii_case("REF")
+            && matches!(before.kind, Id | RBracket | RParen | Caret)
+    }
+
+    /// `REF=`, whose `=` is here.
+    fn bind(&mut self) {
+        self.at += 1;
+        if let Some(word) = self.out.tokens.last_mut() {
+            word.kind = Tok::Bind;
+            word.end = self.at as u32;
+        }
+        self.first = false;
     }
 
     /// `:`, or one of the ways to spoil `:=`, none of which can be anything else.

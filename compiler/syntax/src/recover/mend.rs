@@ -432,7 +432,7 @@ impl Recovery<'_, '_> {
 
 fn is_operator(kind: Tok) -> bool {
     use Tok::*;
-    matches!(kind, Assign | Attempt | Eq | Plus | Minus | Star | Rel | Op | Not | Arrow)
+    matches!(kind, Assign | Attempt | Bind | Eq | Plus | Minus | Star | Rel | Op | Not | Arrow)
 }
 
 fn is_operand_start(kind: Tok) -> bool {
