@@ -167,6 +167,8 @@ pub struct Generator {
     indent: usize,
     /// Whether faults are to be possible.
     faults: bool,
+    /// Most programs are short: much of what two statements can do to each other, in little time. One in sixteen is long.
+    deep: bool,
 }
 
 /// One program named `{prefix}Main` with its functions and blocks.
@@ -186,6 +188,7 @@ pub fn program(seed: u64, prefix: &str, faults: bool) -> String {
         free_loop_vars: Vec::new(),
         indent: 1,
         faults,
+        deep: seed.is_multiple_of(16),
     };
     for n in 0..g.rng.usize(0..4) {
         g.function(n);
@@ -440,7 +443,7 @@ impl Generator {
             self.vars.push(Var { text: "tmp".into(), ty: Ty::Int { bits: 32, signed: true }, write: true });
         }
         self.locals(true);
-        self.statements(4);
+        self.statements(if self.deep { 4 } else { 2 });
         let action = self.chance(30);
         if action {
             self.line("ACTION act :");
@@ -462,7 +465,7 @@ impl Generator {
         self.line("VAR cycle : DINT; END_VAR");
         self.vars.push(Var { text: "cycle".into(), ty: Ty::Int { bits: 32, signed: true }, write: false });
         self.line("cycle := cycle + 1;");
-        self.statements(6);
+        self.statements(if self.deep { 6 } else { 3 });
         self.indent = 0;
         self.line("END_PROGRAM");
     }

@@ -22,7 +22,7 @@ fn outcome(text: &str, passes: &[Pass], run: &Run) -> Option<Result<usize, Disag
 }
 
 /// Whether it ended with faults; stops with the smallest text that shows the same wrong pass.
-fn judge(seed: u64, text: &str) -> bool {
+pub fn judge(seed: u64, text: &str) -> bool {
     match outcome(text, passes(), &RUN) {
         None => panic!("seed {seed} does not compile\n{text}"),
         Some(Ok(faults)) => faults > 0,

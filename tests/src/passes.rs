@@ -165,6 +165,15 @@ pub fn agree(program: &Program, passes: &[Pass], how: &Run) -> Result<usize, Dis
     Ok(before.iter().filter(|seen| seen.status != 0).count())
 }
 
+/// Runs a verified program in the interpreter, and as native code after all passes. Gives whether it ended with a fault.
+pub fn native_agrees(program: &Program, passes: &[Pass], how: &Run) -> Result<bool, String> {
+    let before = interpret(program, how);
+    let mut optimised = program.clone();
+    passes.iter().for_each(|pass| (pass.run)(&mut optimised));
+    same(&before, &native(&optimised, how)?)?;
+    Ok(before.iter().any(|seen| seen.status != 0))
+}
+
 /// The status of each cycle in the interpreter, which must be that of native code if that runs too.
 pub fn statuses(program: &Program, how: &Run) -> Vec<u32> {
     let list = |seen: Vec<Seen>| seen.iter().map(|s| s.status).collect::<Vec<u32>>();

@@ -1,7 +1,7 @@
 //! One function of the program to CLIF: blocks one to one, checks as branches to cold blocks.
 
 use crate::place::memory;
-use crate::prim::{self, clif_type};
+use crate::prim::{self, carrier, clif_type};
 use crate::shape::{Shape, signature};
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{
@@ -16,7 +16,7 @@ use plcc_mir::ir::{
     Base, Block, BlockId, Cond, Exit, Func, FuncId, Inst, Place, Program, Target, Term, TextPlace, ValueId,
 };
 use plcc_stdlib::fault::Fault;
-use plcc_stdlib::prim::Repr;
+use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::region::{DEADLINE_FLAG, FAULT_CODE, FAULT_INSTANCE, FAULT_OPERANDS, FAULT_SOURCE};
 use plcc_stdlib::rt::RtFn;
 use plcc_stdlib::rt::strings::TextFn;
@@ -154,12 +154,17 @@ impl<'a, 'f> Translator<'a, 'f> {
             let block = self.b.create_block();
             self.blocks[*id] = Some(block);
             for param in &self.func.blocks[*id].params {
-                let value = self.b.append_block_param(block, clif_type(self.func.values[*param]));
+                let value = self.b.append_block_param(block, carrier(self.func.values[*param]));
                 self.values[*param] = Some(value);
             }
         }
         if entry_is_target {
-            let args: Vec<BlockArg> = args.into_iter().map(BlockArg::from).collect();
+            let params = self.func.params.clone();
+            let args = args.into_iter().zip(params).map(|(value, repr)| match repr {
+                Repr::I16 => self.b.ins().uextend(types::I32, value).into(),
+                _ => BlockArg::from(value),
+            });
+            let args: Vec<BlockArg> = args.collect();
             let first = self.target_block(BlockId::from_usize(0));
             self.b.ins().jump(first, &args);
         }
@@ -178,8 +183,27 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.b.finalize(self.env.config);
     }
 
-    pub(crate) fn value(&self, id: ValueId) -> Value {
+    fn defined(&self, id: ValueId) -> Value {
         self.values[id].unwrap_or_else(|| plcc_diag::bug!("v{} of `{}` has no value", id.index(), self.func.name))
+    }
+
+    /// A value in the type of its representation.
+    pub(crate) fn value(&mut self, id: ValueId) -> Value {
+        let value = self.defined(id);
+        let ty = clif_type(self.func.values[id]);
+        if self.b.func.dfg.value_type(value) == ty { value } else { self.b.ins().ireduce(ty, value) }
+    }
+
+    /// A value in the type in which it is computed and handed on, see [`carrier`].
+    fn carried(&mut self, id: ValueId) -> Value {
+        let value = self.defined(id);
+        match (self.func.values[id], self.constants[id]) {
+            (Repr::I16, Some(raw)) => self.b.ins().iconst(types::I32, i64::from(raw as u16 as i16 as i32 as u32)),
+            (Repr::I16, None) if self.b.func.dfg.value_type(value) == types::I16 => {
+                self.b.ins().uextend(types::I32, value)
+            }
+            _ => value,
+        }
     }
 
     /// A value as it is stored: a real constant by its bits, which need no register of a real.
@@ -196,12 +220,12 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.blocks[id].unwrap_or_else(|| plcc_diag::bug!("b{} of `{}` is not reachable", id.index(), self.func.name))
     }
 
-    fn values(&self, ids: &[ValueId]) -> Vec<Value> {
+    fn values(&mut self, ids: &[ValueId]) -> Vec<Value> {
         ids.iter().map(|v| self.value(*v)).collect()
     }
 
-    fn args(&self, target: &Target) -> Vec<BlockArg> {
-        target.args.iter().map(|v| self.value(*v).into()).collect()
+    fn args(&mut self, target: &Target) -> Vec<BlockArg> {
+        target.args.iter().map(|v| self.carried(*v).into()).collect()
     }
 
     fn block(&mut self, id: BlockId) {
@@ -232,8 +256,7 @@ impl<'a, 'f> Translator<'a, 'f> {
                 self.values[*dst] = Some(value);
             }
             Inst::Prim { dst, op, repr, args } => {
-                let args = self.values(args);
-                let value = prim::emit(&mut self.b, *op, *repr, &args);
+                let value = self.prim(*op, *repr, args);
                 self.values[*dst] = Some(value);
             }
             Inst::Load { dst, place, normalise } => {
@@ -269,6 +292,35 @@ impl<'a, 'f> Translator<'a, 'f> {
                 self.b.ins().brif(flag, failed, &[], next, &[]);
                 self.leave_with_fault(failed, Fault::Deadline, exit, &[]);
                 self.b.switch_to_block(next);
+            }
+        }
+    }
+
+    fn prim(&mut self, op: PrimOp, repr: Repr, args: &[ValueId]) -> Value {
+        let known = |v: ValueId| self.constants[v];
+        match (op, repr) {
+            // The lower half of the result needs the lower halves of the operands only.
+            (PrimOp::Add | PrimOp::Sub | PrimOp::Mul | PrimOp::And | PrimOp::Or | PrimOp::Xor, Repr::I16)
+            | (PrimOp::Neg | PrimOp::Not, Repr::I16) => {
+                let args: Vec<Value> = args.iter().map(|v| self.carried(*v)).collect();
+                prim::emit(&mut self.b, op, Repr::I32, &args)
+            }
+            (PrimOp::Shl, Repr::I16) if known(args[1]).is_some_and(|count| count < 16) => {
+                let (value, count) = (self.carried(args[0]), self.value(args[1]));
+                prim::emit(&mut self.b, op, Repr::I32, &[value, count])
+            }
+            (PrimOp::Select, Repr::I16) => {
+                let args = [self.value(args[0]), self.carried(args[1]), self.carried(args[2])];
+                prim::emit(&mut self.b, op, Repr::I32, &args)
+            }
+            (PrimOp::Wrap(Repr::I16), Repr::I32) => self.value(args[0]),
+            (PrimOp::Wrap(Repr::I16), Repr::I64) => {
+                let value = self.value(args[0]);
+                prim::emit(&mut self.b, PrimOp::Wrap(Repr::I32), repr, &[value])
+            }
+            _ => {
+                let args = self.values(args);
+                prim::emit(&mut self.b, op, repr, &args)
             }
         }
     }

@@ -19,6 +19,12 @@ pub fn clif_type(repr: Repr) -> Type {
     }
 }
 
+/// The type in which values are computed and handed on from block to block. Operations on 16 bits with a constant have a
+/// prefix that x86-64 decodes slowly, and none of three operands; so these have 32, the upper half of which means nothing.
+pub fn carrier(repr: Repr) -> Type {
+    if repr == Repr::I16 { types::I32 } else { clif_type(repr) }
+}
+
 /// A constant: the register value `raw` of a representation.
 pub fn constant(b: &mut FunctionBuilder, repr: Repr, raw: u64) -> Value {
     use cranelift_codegen::ir::immediates::{Ieee32, Ieee64};

@@ -221,8 +221,10 @@ impl FuncLower<'_, '_> {
                 }
                 Argument::Text(var, from) => {
                     let to = self.parameter(target, var);
-                    if let Some(to) = self.text_at(&to) {
-                        self.copy_text(&to, &from);
+                    match self.text_at(&to) {
+                        Some(to) if matches!(to.place.base, Base::Frame) => self.copy_text_whole(&to, &from),
+                        Some(to) => self.copy_text(&to, &from),
+                        None => {}
                     }
                     stored.push(var);
                 }

@@ -30,6 +30,9 @@ pub(super) struct Text {
     capacity: Capacity,
     /// Nothing but this expression knows it: a constant, or a temporary.
     own: bool,
+    /// What lies behind its end is left over from something else. A program can look there (by subscript, UNION or pointer),
+    /// so that it must not get into a variable: what a temporary held before depends on where frames lie.
+    left_over: bool,
     /// One of several that SEL and its kind chose at run time, maybe of the own frame.
     chosen: bool,
 }
@@ -118,7 +121,7 @@ impl FuncLower<'_, '_> {
             },
             _ => return None,
         };
-        Some(Text { place: access.place.clone(), wide, capacity, own: false, chosen: false })
+        Some(Text { place: access.place.clone(), wide, capacity, own: false, left_over: false, chosen: false })
     }
 
     /// The inverse of [`FuncLower::text_at`], for a type of strings.
@@ -143,23 +146,26 @@ impl FuncLower<'_, '_> {
             }
             ExprKind::Temp(temp) => {
                 let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
-                self.text_at(&access).unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]))
+                let text = self.text_at(&access);
+                let text = text.unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]));
+                Text { left_over: true, ..text }
             }
             ExprKind::Retype(inner) => self.text(inner),
             ExprKind::String(s) => {
                 let place = self.string_constant(s.clone(), 1);
-                Text { place, wide: false, capacity: Capacity::Known(s.len() as u32), own: true, chosen: false }
+                Text { place, wide: false, capacity: Capacity::Known(s.len() as u32), own: true, left_over: false, chosen: false }
             }
             ExprKind::WString(s) => {
                 let bytes = s.iter().flat_map(|unit| unit.to_le_bytes()).collect();
                 let place = self.string_constant(bytes, 2);
-                Text { place, wide: true, capacity: Capacity::Known(s.len() as u32), own: true, chosen: false }
+                Text { place, wide: true, capacity: Capacity::Known(s.len() as u32), own: true, left_over: false, chosen: false }
             }
             ExprKind::Call(call) => {
                 let (wide, capacity) = self.string_type(expr.ty);
                 let temp = self.text_temp(wide, capacity);
                 self.call(call, Some(temp.place.clone()));
-                temp
+                // The whole variable was copied.
+                Text { left_over: false, ..temp }
             }
             ExprKind::StdCall(call) => {
                 let temp = self.text_temp(self.string_type(expr.ty).0, self.bound(expr));
@@ -233,15 +239,29 @@ impl FuncLower<'_, '_> {
         true
     }
 
+    /// Copies a string to where nothing is defined yet; the two do not overlap. What is left over there from something else
+    /// must not be seen behind the string's end.
+    pub fn copy_text_whole(&mut self, to: &Text, from: &Text) {
+        if self.block_bytes(to, from) != to.bytes().map(|n| n as u32 - to.unit_bytes())
+            && let Some(bytes) = to.bytes()
+        {
+            self.b.zero(to.place.clone(), bytes as u32);
+        }
+        self.copy_text(to, from);
+    }
+
+    /// Bytes of characters that are copied without a look for the string's end; `None` if it must be looked for.
+    fn block_bytes(&self, to: &Text, from: &Text) -> Option<u32> {
+        let bytes = to.known()?.min(from.known()?).checked_mul(to.unit_bytes())?;
+        (bytes <= INLINE_BYTES && !from.left_over).then_some(bytes)
+    }
+
     /// Copies a string and cuts it at the capacity. The two may be the same or overlap.
     pub fn copy_text(&mut self, to: &Text, from: &Text) {
         if to.place == from.place && to.known().is_some_and(|n| from.known() == Some(n)) {
             return;
         }
-        if let (Some(room), Some(capacity)) = (to.known(), from.known())
-            && let Some(bytes) = room.min(capacity).checked_mul(to.unit_bytes())
-            && bytes <= INLINE_BYTES
-        {
+        if let Some(bytes) = self.block_bytes(to, from) {
             // It ends at its first 0, wherever that is: all characters that both can hold, and a 0 behind them.
             self.b.copy(to.place.clone(), from.place.clone(), bytes);
             let end = self.b.number(unit_repr(to.wide), 0);
@@ -365,6 +385,7 @@ impl FuncLower<'_, '_> {
             wide: yes.wide,
             capacity: Capacity::Carried(capacity),
             own: yes.own && no.own,
+            left_over: yes.left_over || no.left_over,
             chosen: true,
         }
     }
@@ -414,7 +435,7 @@ impl FuncLower<'_, '_> {
             self.text_temps.rooms.push((place.clone(), bytes, true));
             place
         });
-        Text { place, wide, capacity: Capacity::Known(capacity), own: true, chosen: false }
+        Text { place, wide, capacity: Capacity::Known(capacity), own: true, left_over: true, chosen: false }
     }
 
     fn string_type(&self, ty: TypeId) -> (bool, u32) {
