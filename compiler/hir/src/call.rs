@@ -649,11 +649,9 @@ impl<'a> Checker<'_, 'a> {
                     }
                 }
                 _ => {
-                    let strings = |t| match self.cx.defs.types.get(t) {
-                        Type::String { wide, .. } => Some(*wide),
-                        _ => None,
-                    };
-                    if strings(ty).is_none() || strings(ty) != strings(place.ty) {
+                    // A string, or a single character, goes to a string of its kind.
+                    let kind = self.text_kind(ty);
+                    if kind.is_none() || kind != self.string_kind(place.ty) {
                         let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
                         let followed = self.is_reference_to(ty).then_some("read it behind the call, `instance.output`");
                         self.report(

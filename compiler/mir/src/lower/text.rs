@@ -8,6 +8,7 @@ use super::place::Access;
 use crate::ir::{Base, Place, TextPlace, ValueId};
 use plcc_diag::bug;
 use plcc_hir::body::{Expr, ExprKind};
+use plcc_hir::visit::{self, Visitor};
 use plcc_hir::{Defs, Type, TypeId};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::funcs::TextOp;
@@ -85,10 +86,16 @@ impl Temps {
     }
 }
 
-/// The capacity of the longest STRING and WSTRING that a variable can have.
+/// The capacity of the longest STRING and WSTRING that a variable can have, or a literal where a temporary of a body
+/// holds strings of any capacity.
 pub(super) fn longest(defs: &Defs) -> [u32; 2] {
-    let fields = defs.structs.iter().flat_map(|s| s.fields.iter().map(|f| f.ty));
     let mut found = [0; 2];
+    for body in &defs.bodies {
+        if body.temps.iter().any(|ty| matches!(defs.types[*ty], Type::AnyString { .. })) {
+            visit::stmts(&body.stmts, &mut Literals(&mut found));
+        }
+    }
+    let fields = defs.structs.iter().flat_map(|s| s.fields.iter().map(|f| f.ty));
     for mut ty in defs.vars.iter().map(|v| v.ty).chain(fields) {
         loop {
             match &defs.types[ty] {
@@ -103,6 +110,21 @@ pub(super) fn longest(defs: &Defs) -> [u32; 2] {
         }
     }
     found
+}
+
+/// The longest literals of a body.
+struct Literals<'f>(&'f mut [u32; 2]);
+
+impl Visitor for Literals<'_> {
+    fn expr(&mut self, expr: &Expr) {
+        let (wide, length) = match &expr.kind {
+            ExprKind::String(s) => (false, s.len()),
+            ExprKind::WString(s) => (true, s.len()),
+            _ => return,
+        };
+        let longest = &mut self.0[usize::from(wide)];
+        *longest = (*longest).max(length as u32);
+    }
 }
 
 impl FuncLower<'_, '_> {
@@ -145,7 +167,7 @@ impl FuncLower<'_, '_> {
                 self.text_at(&access).unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]))
             }
             ExprKind::Temp(temp) => {
-                let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
+                let access = self.temp(*temp);
                 let text = self.text_at(&access);
                 let text = text.unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]));
                 Text { left_over: true, ..text }
@@ -153,12 +175,26 @@ impl FuncLower<'_, '_> {
             ExprKind::Retype(inner) => self.text(inner),
             ExprKind::String(s) => {
                 let place = self.string_constant(s.clone(), 1);
-                Text { place, wide: false, capacity: Capacity::Known(s.len() as u32), own: true, left_over: false, chosen: false }
+                Text {
+                    place,
+                    wide: false,
+                    capacity: Capacity::Known(s.len() as u32),
+                    own: true,
+                    left_over: false,
+                    chosen: false,
+                }
             }
             ExprKind::WString(s) => {
                 let bytes = s.iter().flat_map(|unit| unit.to_le_bytes()).collect();
                 let place = self.string_constant(bytes, 2);
-                Text { place, wide: true, capacity: Capacity::Known(s.len() as u32), own: true, left_over: false, chosen: false }
+                Text {
+                    place,
+                    wide: true,
+                    capacity: Capacity::Known(s.len() as u32),
+                    own: true,
+                    left_over: false,
+                    chosen: false,
+                }
             }
             ExprKind::Call(call) => {
                 let (wide, capacity) = self.string_type(expr.ty);
@@ -418,6 +454,12 @@ impl FuncLower<'_, '_> {
         };
         let texts: Vec<&Text> = std::iter::once(to).chain(&operands.texts).collect();
         self.call_text(f, &texts, &operands.values);
+    }
+
+    /// Writes the text of a value into a string.
+    pub fn write_text(&mut self, value: ValueId, elem: Elem, to: &Access) {
+        let Some(to) = self.text_at(to) else { bug!("{:?} is no string", self.defs.types[to.ty]) };
+        self.build(TextOp::Write(elem), &Operands { texts: Vec::new(), values: vec![value] }, &to);
     }
 
     fn call_text(&mut self, f: &'static TextFn, texts: &[&Text], values: &[ValueId]) -> ValueId {

@@ -192,6 +192,11 @@ impl Blocks<'_, '_> {
                 }
             }
             Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.late_section(t),
+            // `MOD(a, b, ENO => ok);`: an operator's word as the function that begins a statement.
+            Tok::Op if self.at_statement() && self.peek(1).kind == Tok::LParen => {
+                let word = t.text(self.text).starts_with(|c: char| c.is_ascii_alphabetic());
+                return self.take(if word { Tok::Id } else { Tok::Op });
+            }
             Tok::Then | Tok::Do => self.missing_opener(t.kind),
             kind => {
                 if let Some(block) = Construct::statement(kind) {
