@@ -225,6 +225,32 @@ const MISTAKES: &[Mistake] = &[
         code: "E0117", at: "Mode : Idle", help: "parentheses" },
     Mistake { what: "a declaration without its name", from: "  spare : BOOL;\nEND_VAR\nspare := NOT pulse;\n", to: "  : BOOL;\nEND_VAR\n",
         code: "E0117", at: "  : BOOL;", help: "`name : type;`" },
+    Mistake { what: "an input without its name", from: "  raw : INT;", to: "  : INT;",
+        code: "E0117", at: "  : INT;\n  gain", help: "`name : type;`" },
+    Mistake { what: "a component without its name", from: "    speed : REAL;", to: "    : REAL;",
+        code: "E0117", at: "    : REAL;", help: "`name : type;`" },
+    Mistake { what: "a type without its name", from: "  Motor : STRUCT", to: "  : STRUCT",
+        code: "E0117", at: "  : STRUCT", help: "`name : type;`" },
+    Mistake { what: "a function block without its name", from: "FUNCTION_BLOCK Counter", to: "FUNCTION_BLOCK",
+        code: "E0117", at: "FUNCTION_BLOCK\nVAR_INPUT\n  pulse", help: "FUNCTION_BLOCK Motor" },
+    Mistake { what: "a function without its name", from: "FUNCTION Scale : REAL", to: "FUNCTION : REAL",
+        code: "E0117", at: "FUNCTION : REAL", help: "FUNCTION Motor" },
+    Mistake { what: "an enumeration value that is missing between two commas", from: "(Idle, Run, Fault)", to: "(Idle, , Fault)",
+        code: "E0116", at: "(Idle, , Fault)", help: "remove a `,`" },
+    Mistake { what: "a name twice before `:`", from: "  share : Percent;", to: "  share share : Percent;",
+        code: "E0117", at: "share share", help: "remove one" },
+    Mistake { what: "ELSIF twice", from: "ELSIF level", to: "ELSIF ELSIF level",
+        code: "E0117", at: "ELSIF ELSIF", help: "remove one" },
+    Mistake { what: "missing REPEAT", from: "REPEAT\n  share", to: "  share",
+        code: "E0115", at: "UNTIL share", help: "`REPEAT`" },
+    Mistake { what: "missing END_REPEAT", from: "UNTIL share >= 50\nEND_REPEAT;", to: "UNTIL share >= 50;",
+        code: "E0101", at: "REPEAT\n", help: "END_REPEAT" },
+    Mistake { what: "missing UNTIL before the condition", from: "UNTIL share >= 50", to: "share >= 50 ",
+        code: "E0115", at: "share >= 50 ", help: "UNTIL" },
+    Mistake { what: "missing `(` of a call", from: "delay(IN := start", to: "delay IN := start",
+        code: "E0115", at: "delay IN", help: "`(`" },
+    Mistake { what: "missing END_STRUCT, and what is declared behind it", from: "  END_STRUCT;\n", to: "",
+        code: "E0101", at: "Motor : STRUCT", help: "END_STRUCT" },
     Mistake { what: "missing type of a constant", from: "COUNT : INT := 4;", to: "COUNT := 4;",
         code: "E0116", at: "COUNT := 4", help: "`COUNT : INT`" },
     Mistake { what: "missing value of a constant", from: "COUNT : INT := 4;", to: "COUNT : INT := ;",
@@ -465,12 +491,12 @@ fn a_slip_anywhere_gives_few_messages() {
             let (_, diags, _) = diagnose(&text, Profile::Strict);
             let messages = diags.sorted().len();
             let place = line(CORRECT, t.start);
-            assert!(messages <= 4, "line {place}, {how} `{}`: {messages} messages", &CORRECT[t.clone()]);
+            assert!(messages <= 2, "line {place}, {how} `{}`: {messages} messages", &CORRECT[t.clone()]);
             all += 1;
             if messages > 1 {
                 more.push(format!("line {place}, {how} `{}`: {messages}", &CORRECT[t.clone()]));
             }
         }
     }
-    assert!(more.len() * 100 <= all * 8, "{} of {all} slips give several messages:\n{}", more.len(), more.join("\n"));
+    assert!(more.len() * 100 <= all * 2, "{} of {all} slips give several messages:\n{}", more.len(), more.join("\n"));
 }

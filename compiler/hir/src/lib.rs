@@ -94,6 +94,9 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
         cx.codesys_only = 0;
         cx.diags.retain(|d| !doubtful.touches(d.primary.span));
     }
+    if !cx.half_read.is_empty() {
+        doubt::find_unnamed(units, &mut cx.diags);
+    }
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }
 }

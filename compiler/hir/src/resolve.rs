@@ -250,6 +250,10 @@ impl<'a> Cx<'a> {
         let mut seen: FxHashMap<_, Span> = FxHashMap::default();
         for decl in decls {
             for field in &decl.names {
+                // One that lacks its name is reported, and cannot be named.
+                if field.text.is_empty() {
+                    continue;
+                }
                 if let Some(first) = seen.insert(fold(&field.text), field.span) {
                     self.push(
                         Diagnostic::new(
@@ -270,7 +274,8 @@ impl<'a> Cx<'a> {
                 fields.push(Field { name: field.text.clone(), ty: resolved.ty, init, span: field.span });
             }
         }
-        if fields.is_empty() {
+        let unnamed = || decls.iter().any(|d| d.names.iter().any(|n| n.text.is_empty()));
+        if fields.is_empty() && !unnamed() {
             self.push(
                 Diagnostic::new(codes::EMPTY_TYPE, te.span, "a structure without components")
                     .help("declare at least one component"),

@@ -406,8 +406,14 @@ impl<'a, 'd> Blocks<'a, 'd> {
         if !self.stack.is_empty() {
             self.close_above(0, self.peek(0));
         }
-        let kind = if block == Construct::Configuration { Tok::Configuration } else { self.peek(0).kind };
+        let t = self.peek(0);
+        let kind = if block == Construct::Configuration { Tok::Configuration } else { t.kind };
         self.begin_item();
+        if block.is_pou() && self.peek(1).kind == t.kind && !self.peek(1).first {
+            let message = format!("{} stands twice", kind.describe());
+            self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove one of them"));
+            self.at += 1;
+        }
         self.open(block, kind);
         if block.is_pou() {
             self.pou_head(block);

@@ -346,19 +346,17 @@ impl Lexer<'_, '_, '_> {
         self.first = false;
     }
 
-    /// `:`, or one of the ways to spoil `:=`, none of which can be anything else.
+    /// `:`, or `:=` with a blank inside, which can be nothing else.
     fn colon(&mut self) {
         let rest = self.bytes[self.at + 1..].iter();
         let gap = rest.take_while(|b| matches!(b, b' ' | b'\t')).count();
         let (start, after) = (self.at, self.at + 1 + gap);
         let assign = match (self.bytes.get(after), self.bytes.get(after + 1)) {
-            (Some(b'='), next) if next != Some(&b'>') && gap > 0 => {
-                Some((after + 1, "`:=` is one sign, without a blank between `:` and `=`"))
-            }
-            (Some(b':'), Some(b'=')) => Some((after + 2, "one `:` too many before `:=`")),
+            (Some(b'='), next) if next != Some(&b'>') && gap > 0 => Some(after + 1),
             _ => None,
         };
-        let Some((end, message)) = assign else { return self.push(Tok::Colon, 1) };
+        let message = "`:=` is one sign, without a blank between `:` and `=`";
+        let Some(end) = assign else { return self.push(Tok::Colon, 1) };
         self.report.push(self.report.at(codes::SPLIT_ASSIGN, start as u32, end as u32, message).help("write `:=`"));
         self.push(Tok::Assign, end - start);
     }

@@ -14,10 +14,11 @@ const SECTIONS: &[&str] = &["VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_EXTERN
 impl Blocks<'_, '_> {
     /// What stands between the keyword of a POU and its first section.
     pub(super) fn pou_head(&mut self, block: Construct) {
-        if self.peek(0).kind != Tok::Id {
-            return;
+        match self.peek(0) {
+            t if t.kind == Tok::Id => self.take(Tok::Id),
+            t if t.kind == Tok::Colon || t.first => self.missing_name(block),
+            _ => return,
         }
-        self.take(Tok::Id);
         for word in ["EXTENDS", "IMPLEMENTS"] {
             let t = self.peek(0);
             if self.is(0, word) && self.peek(1).kind == Tok::Id {
@@ -35,8 +36,14 @@ impl Blocks<'_, '_> {
         if block == Construct::Function {
             let (t, next) = (self.peek(0), self.peek(1));
             let type_alone = t.kind == Tok::Id && !t.first && (next.first || next.kind == Tok::Var);
-            if t.kind == Tok::Colon {
+            if t.kind == Tok::Id && !t.first && next.kind == Tok::Colon {
+                self.drop_word(t, format!("`{}` does not belong behind the name", t.text(self.text)));
+            }
+            if self.peek(0).kind == Tok::Colon {
                 self.take(Tok::Colon);
+                while self.peek(0).kind == Tok::Colon {
+                    self.drop_word(self.peek(0), "`:` stands twice".into());
+                }
                 self.result_type();
             } else if type_alone {
                 let name = t.text(self.text);
@@ -55,15 +62,33 @@ impl Blocks<'_, '_> {
         }
     }
 
+    /// A POU without its name: reported, and declared without.
+    fn missing_name(&mut self, block: Construct) {
+        let at = self.previous_end();
+        let word = self.last().describe();
+        let example = if block == Construct::Program { "Main" } else { "Motor" };
+        self.report.push(
+            self.report
+                .at(codes::UNEXPECTED, at, at, format!("a name is missing behind {word}"))
+                .help(format!("write for example `{word} {example}`")),
+        );
+        self.report.lose_unnamed();
+        self.insert(Tok::Id);
+    }
+
+    /// Leaves the next token out.
+    fn drop_word(&mut self, t: Token, message: String) {
+        self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it"));
+        self.at += 1;
+    }
+
     /// A further word on the line of a POU's name.
     fn junk_behind_name(&mut self) {
         let (t, next) = (self.peek(0), self.peek(1));
         if t.kind != Tok::Id || t.first || !(next.first || next.kind == Tok::Var) {
             return;
         }
-        let message = format!("`{}` does not belong behind the name", t.text(self.text));
-        self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it"));
-        self.at += 1;
+        self.drop_word(t, format!("`{}` does not belong behind the name", t.text(self.text)));
     }
 
     /// Emits the tokens of one type, as far as the body could be mistaken for its continuation.

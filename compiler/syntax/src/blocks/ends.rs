@@ -152,6 +152,8 @@ impl Blocks<'_, '_> {
             let frame = self.stack[self.stack.len() - 1];
             self.before_end();
             match frame.block {
+                // What stands behind it may not have been meant for it.
+                Construct::Struct | Construct::Union => self.lose_declared(frame.opener),
                 Construct::Repeat if !frame.has_else => {
                     self.insert(Tok::Until);
                     self.insert(Tok::Bad);
@@ -166,6 +168,16 @@ impl Blocks<'_, '_> {
             } else if self.stack.is_empty() {
                 let item = std::mem::take(&mut self.out);
                 self.items.push(item);
+            }
+        }
+    }
+
+    /// The names that are declared behind a token are not known any more.
+    fn lose_declared(&mut self, opener: Token) {
+        let from = self.out.iter().rposition(|t| t.start <= opener.start).unwrap_or(0);
+        for pair in self.out[from..].windows(2) {
+            if pair[0].kind == Tok::Id && pair[1].kind == Tok::Colon {
+                self.report.lose(pair[0].text(self.text));
             }
         }
     }

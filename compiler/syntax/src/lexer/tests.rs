@@ -124,7 +124,7 @@ fn signs() {
     );
     assert_eq!(lexed("== != && || !").0, ["Eq ==", "Rel !=", "Op &&", "Op ||", "Not !"]);
     assert_eq!(lexed("a : = b").0, ["Id a", "Assign : =", "Id b"]);
-    assert_eq!(lexed("a: :=b").0, ["Id a", "Assign : :=", "Id b"]);
+    assert_eq!(lexed("a: :=b").0, ["Id a", "Colon :", "Assign :=", "Id b"]);
 }
 
 #[test]

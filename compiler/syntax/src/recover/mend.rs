@@ -11,9 +11,10 @@ impl Recovery<'_, '_> {
     /// Mends the place if the cause is plain; the message says what it was.
     pub(super) fn insert_missing(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
         self.wrong_sign(refused)
+            .or_else(|| self.doubled(refused))
             .or_else(|| self.value_on_next_line(refused, segment))
             .or_else(|| self.reserved_word(refused))
-            .or_else(|| self.branch_word(refused))
+            .or_else(|| self.branch_word(refused, segment))
             .or_else(|| self.block_word(refused, segment))
             .or_else(|| self.nameless(refused, segment))
             .or_else(|| self.type_on_next_line(refused, segment))
@@ -22,6 +23,7 @@ impl Recovery<'_, '_> {
             .or_else(|| self.operand(refused))
             .or_else(|| self.closing(refused, segment))
             .or_else(|| self.too_much(refused))
+            .or_else(|| self.opening(refused, segment))
             .or_else(|| self.semicolon(refused))
     }
 
@@ -68,6 +70,19 @@ impl Recovery<'_, '_> {
                     self.report.at(codes::FOREIGN_OPERATOR, start, end, "`=>` connects an output, it does not compare");
                 Some(message.help("greater or equal is written `>=`"))
             }
+            Tok::Assign
+                if self.kind(at.wrapping_sub(1)) == Tok::Colon && !self.lacks_type(at) && !self.begins_line(at) =>
+            {
+                let colon = self.tokens.remove(at - 1);
+                let message = self.report.at(codes::SPLIT_ASSIGN, colon.start, end, "one `:` too many before `:=`");
+                Some(message.help("write `:=`"))
+            }
+            Tok::Colon if self.kind(at + 1) == Tok::Assign && !self.begins_line(at + 1) => {
+                let (_, end) = self.bytes(at + 1);
+                self.tokens.remove(at);
+                let message = self.report.at(codes::SPLIT_ASSIGN, start, end, "one `:` too many before `:=`");
+                Some(message.help("write `:=`"))
+            }
             Tok::Assign if self.kind(at.wrapping_sub(1)) == Tok::Assign => {
                 self.tokens.remove(at);
                 let message = self.report.at(codes::UNEXPECTED, start, end, "`:=` stands twice");
@@ -75,6 +90,33 @@ impl Recovery<'_, '_> {
             }
             _ => None,
         }
+    }
+
+    /// Whether the `:` before the token `at` is that of a declaration, and its type is missing.
+    fn lacks_type(&self, at: usize) -> bool {
+        let start = self.segment(at).start;
+        let colons = self.tokens[start.min(at)..at].iter().filter(|t| t.kind == Tok::Colon).count();
+        self.surroundings(at) == Surroundings::Declarations && colons == 1
+    }
+
+    /// A word or sign that is written twice on a line.
+    fn doubled(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        use Tok::*;
+        let at = refused.at;
+        let (t, before) = (*self.tokens.get(at)?, *self.tokens.get(at.checked_sub(1)?)?);
+        let kind =
+            matches!(t.kind, Id | Int | Lit | Qualified | Colon | CaseOf | Of | To | By | Then | Do | Until | At);
+        let text = t.text(self.text);
+        // `value value + 1` lacks its `:=`, `counter Counter` its `:`.
+        if t.kind == Id && !matches!(self.kind(at + 1), Assign | Colon | Comma | LParen | RParen | RBracket) {
+            return None;
+        }
+        if !kind || t.first || t.is_inserted() || !text.eq_ignore_ascii_case(before.text(self.text)) {
+            return None;
+        }
+        self.tokens.remove(at);
+        let message = self.report.at(codes::UNEXPECTED, t.start, t.end, format!("`{text}` stands twice"));
+        Some(message.help("remove one of them"))
     }
 
     /// `x :=` at the end of a line and `y := 1;` on the next: the value of x is missing, not the `;`.
@@ -108,7 +150,7 @@ impl Recovery<'_, '_> {
     }
 
     /// A second ELSE, ELSIF behind ELSE, REPEAT without UNTIL.
-    fn branch_word(&mut self, refused: &Refused) -> Option<Diagnostic> {
+    fn branch_word(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
         let at = refused.at;
         let (start, end) = self.bytes(at);
         match self.kind(at) {
@@ -124,6 +166,16 @@ impl Recovery<'_, '_> {
                 let message =
                     self.report.at(codes::UNEXPECTED, start, end, format!("{word} does not belong to an open IF here"));
                 Some(message.help("an IF has any number of ELSIF and then at most one ELSE"))
+            }
+            // An expression alone before END_REPEAT was meant as the condition.
+            Tok::EndRepeat if refused.wants(";") && segment.start < at => {
+                if self.tokens[segment.start..at].iter().any(|t| t.kind == Tok::Assign) {
+                    return None;
+                }
+                let (start, end) = self.bytes(segment.start);
+                self.tokens.insert(segment.start, Token::inserted(Tok::Until, start));
+                let message = self.report.at(codes::MISSING_WORD, start, end, "UNTIL is missing before this condition");
+                Some(message.help("write `UNTIL condition END_REPEAT`"))
             }
             Tok::EndRepeat if refused.wants("UNTIL") => {
                 let message = self.report.at(codes::MISSING_WORD, start, end, "UNTIL is missing in this REPEAT");
@@ -194,7 +246,9 @@ impl Recovery<'_, '_> {
         }
         let (start, end) = self.bytes(at);
         let message = self.report.at(codes::UNEXPECTED, start, end, "a name is missing before `:`");
-        self.give_up(refused, segment).then(|| message.help("a declaration is written `name : type;`"))
+        self.report.lose_unnamed();
+        self.insert(at, Tok::Id);
+        Some(message.help("a declaration is written `name : type;`"))
     }
 
     /// `Mode : (Idle, Run)` without `;` before `Motor : STRUCT`: the next name was read as part of the type.
@@ -300,7 +354,12 @@ impl Recovery<'_, '_> {
         if !refused.wants_operand() || !nothing {
             return None;
         }
+        let value = matches!(kind, Comma | RParen) && self.in_enumeration(at);
+        if value {
+            self.report.lose_unnamed();
+        }
         let message = match (self.kind(at.wrapping_sub(1)), kind) {
+            _ if value => "a value of the enumeration is missing here".to_string(),
             (_, Then) | (While, Do) => "a condition is missing here".to_string(),
             (before, _) if is_operator(before) => {
                 let sign = self.tokens[at - 1].text(self.text);
@@ -310,7 +369,18 @@ impl Recovery<'_, '_> {
         };
         let message = self.missing(codes::MISSING_OPERAND, at, message);
         self.insert(at, Bad);
-        Some(message.help("write a literal, a variable or a call there"))
+        Some(message.help(if value {
+            "write a name, or remove a `,`"
+        } else {
+            "write a literal, a variable or a call there"
+        }))
+    }
+
+    /// Whether `at` stands between the values of an enumeration: in the parenthesis behind the `:` of a declaration.
+    fn in_enumeration(&self, at: usize) -> bool {
+        let open = self.opener(at).filter(|open| self.kind(*open) == Tok::LParen);
+        open.is_some_and(|open| self.kind(open.wrapping_sub(1)) == Tok::Colon)
+            && self.surroundings(at) == Surroundings::Declarations
     }
 
     /// `)`, `]`, and the `,` between two arguments.
@@ -395,6 +465,19 @@ impl Recovery<'_, '_> {
         let t = self.tokens.remove(at);
         let message = format!("`{}` closes nothing", t.text(self.text));
         Some(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it, or write what opens it"))
+    }
+
+    /// The `(` of a call: `edge CLK := pulse);`.
+    fn opening(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let call = self.kind(at) == Tok::Id && !self.tokens[at].first && self.kind(at.wrapping_sub(1)) == Tok::Id;
+        if !call || self.surroundings(at) != Surroundings::Statements || !self.closes_later(at..segment.end) {
+            return None;
+        }
+        let name = self.tokens[at - 1].text(self.text);
+        let message = self.missing(codes::MISSING_WORD, at, format!("`(` is missing behind `{name}`"));
+        self.insert(at, Tok::LParen);
+        Some(message.help("write `(`"))
     }
 
     /// The `;` behind a statement or declaration.
