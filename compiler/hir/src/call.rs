@@ -11,6 +11,7 @@ use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 /// What a callee turned out to be.
 pub(crate) enum Target {
@@ -167,7 +168,11 @@ impl<'a> Checker<'_, 'a> {
                 {
                     return Target::User(Callee::Action(None, action), action);
                 }
-                if ty == Types::ERROR && !self.cx.pous.contains_key(&key) && plcc_stdlib::funcs::find(&key).is_none() {
+                let callable = match self.cx.pous.get(&key) {
+                    Some(pou) => self.cx.defs.pous[*pou].kind == PouKind::Function,
+                    None => plcc_stdlib::funcs::find(&key).is_some(),
+                };
+                if ty == Types::ERROR && !callable {
                     return Target::Reported;
                 }
             }
@@ -180,8 +185,10 @@ impl<'a> Checker<'_, 'a> {
         if let Some(&pou) = self.cx.pous.get(&key)
             && !builtin
         {
-            return match self.cx.defs.pous[pou].kind {
+            let kind = self.cx.defs.pous[pou].kind;
+            return match kind {
                 PouKind::Function => Target::User(Callee::Function(pou), pou),
+                _ if !self.cx.first_report(self.scope, &format!("pou {key}")) => Target::Reported,
                 kind => {
                     let what = if kind == PouKind::Program { "a PROGRAM" } else { "a FUNCTION_BLOCK" };
                     self.report(
@@ -209,10 +216,17 @@ impl<'a> Checker<'_, 'a> {
             return Target::Standard(func);
         }
         if let Found::Var(var) = found {
-            let ty = self.cx.type_name(self.cx.defs.vars[var].ty);
+            let id = self.cx.defs.vars[var].ty;
+            let ty = self.cx.type_name(id);
+            let help = match self.cx.defs.types.get(id) {
+                Type::Array { .. } | Type::AnyArray { .. } => {
+                    format!("an element of an array is written `{}[...]`", name.text)
+                }
+                _ => "only functions, instances of function blocks and actions can be called".into(),
+            };
             self.report(
                 Diagnostic::new(codes::NOT_CALLABLE, name.span, format!("`{}` is a variable of type {ty}", name.text))
-                    .help("only functions, instances of function blocks and actions can be called"),
+                    .help(help),
             );
             return Target::Reported;
         }
@@ -337,6 +351,15 @@ impl<'a> Checker<'_, 'a> {
                         }
                         (None, _) => {}
                     }
+                    if let Some(output) = value.as_ref().and_then(|e| self.output_turned_around(pou, name, e)) {
+                        let (message, help) = (
+                            format!("`{output}` is an output of the callee"),
+                            format!("an output is fetched with `=>`, its name first: `{output} => {}`", name.text),
+                        );
+                        self.report(Diagnostic::new(codes::WRONG_DIRECTION, arg.span, message).help(help));
+                        fine = false;
+                        continue;
+                    }
                     let Some(param) = self.parameter(pou, name, &mut given) else {
                         if let Some(e) = value {
                             self.operand(e, None);
@@ -391,6 +414,19 @@ impl<'a> Checker<'_, 'a> {
         }
         fine &= self.all_in_outs_given(pou, &given, call.at);
         fine.then_some(out)
+    }
+
+    /// The output that `variable := output` was meant to fetch: `name` is no parameter but a variable here, `value` the
+    /// other way round.
+    fn output_turned_around(&self, pou: PouId, name: &ast::Name, value: &ast::Expr) -> Option<SmolStr> {
+        let ast::ExprKind::Name(output) = &value.kind else { return None };
+        let scope = &self.cx.pou_slots[pou].scope;
+        let Some(Local::Var(var)) = scope.get(&fold(&output.text)) else { return None };
+        let fetched = self.cx.defs.vars[*var].section == Section::Output
+            && !scope.contains_key(&fold(&name.text))
+            && matches!(self.lookup(name), Found::Var(_))
+            && matches!(self.lookup(output), Found::Missing);
+        fetched.then(|| self.cx.defs.vars[*var].name.clone())
     }
 
     /// `Some(true)` for EN, `Some(false)` for ENO, unless the POU declares a parameter of that name.

@@ -210,9 +210,13 @@ fn resource<'a>(cx: &mut Cx<'a>, decl: &'a ast::Resource) -> Resource {
                 let found = resource.tasks.iter().position(|t| t.name.eq_ignore_ascii_case(&name.text));
                 let Some(found) = found else {
                     let hint = similar(&name.text, resource.tasks.iter().map(|t| t.name.as_str()));
+                    let help = match hint {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("declare it: `TASK {}(INTERVAL := T#10ms, PRIORITY := 1);`", name.text),
+                    };
                     cx.push(
                         Diagnostic::new(codes::UNKNOWN_TASK, name.span, format!("there is no TASK `{}`", name.text))
-                            .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
+                            .help(help),
                     );
                     continue;
                 };

@@ -336,6 +336,10 @@ impl<'c, 'a> Checker<'c, 'a> {
         let types = &self.cx.defs.types;
         match (types.get(from), types.get(to)) {
             (Type::Elem(a), Type::Elem(b)) => d = d.help(conversion_help(*a, *b)),
+            (Type::String { .. }, Type::Enum(id)) => {
+                let names = self.value_names(*id);
+                d = d.help(format!("a value of an enumeration stands without quotes: {names}"));
+            }
             _ if self.is_text(from) || self.is_text(to) => d = d.help_if(self.text_help(&expr, from, to)),
             (Type::Enum(_), Type::Enum(_)) => d = d.help("values of different enumerations do not mix"),
             (Type::Enum(id), Type::Elem(b)) => {
@@ -346,9 +350,7 @@ impl<'c, 'a> Checker<'c, 'a> {
                 ));
             }
             (Type::Elem(_), Type::Enum(id)) => {
-                let names: Vec<&str> =
-                    self.cx.defs.enums[*id].values.iter().take(6).map(|(n, _, _)| n.as_str()).collect();
-                d = d.help(format!("use one of its values: {}", names.join(", ")));
+                d = d.help(format!("use one of its values: {}", self.value_names(*id)));
             }
             (Type::Null, _) => {
                 d = d.help(
@@ -374,6 +376,12 @@ impl<'c, 'a> Checker<'c, 'a> {
         }
         self.report(d);
         error_expr(span)
+    }
+
+    /// The first values of an enumeration.
+    fn value_names(&self, id: EnumId) -> String {
+        let names: Vec<&str> = self.cx.defs.enums[id].values.iter().take(6).map(|(n, _, _)| n.as_str()).collect();
+        names.join(", ")
     }
 
     fn coerce_int(&mut self, v: i128, span: Span, target: TypeId) -> Expr {
@@ -441,6 +449,13 @@ impl<'c, 'a> Checker<'c, 'a> {
                     return error_expr(span);
                 }
                 Expr { kind: ExprKind::Const(real_bits(elem, v)), ty: target, span }
+            }
+            Some(elem) if elem.is_integer() && v.fract() == 0.0 && !self.codesys(span) => {
+                self.cx.codesys_only += 1;
+                let message = format!("this is a real literal, but {} is needed here", elem.name());
+                let help = format!("write the number without its fraction: `{v}`");
+                self.report(Diagnostic::new(codes::TYPE_MISMATCH, span, message).help(help));
+                error_expr(span)
             }
             _ => {
                 let ty = Types::elem(Elem::Lreal);

@@ -74,8 +74,10 @@ impl<'a> Checker<'_, 'a> {
         }
         let hint = similar(&name.text, self.visible_names().into_iter());
         let callable = plcc_stdlib::funcs::find(&fold(&name.text)).is_some();
+        let hint = hint.filter(|_| foreign_word(&name.text).is_none());
         let help = match hint {
             Some(near) => format!("did you mean `{near}`?"),
+            None if let Some(help) = foreign_word(&name.text) => help.into(),
             None if callable => format!("`{}` is a standard function; call it with ( )", name.text),
             None => "declare it in a VAR section".into(),
         };
@@ -120,13 +122,31 @@ impl<'a> Checker<'_, 'a> {
                 }
             }
             _ => {
-                self.report(
-                    Diagnostic::new(codes::NOT_A_VARIABLE, e.span, "a variable is needed here")
-                        .help("this is an expression; assign it to a variable first"),
-                );
+                let help = self.no_place_help(e);
+                self.report(Diagnostic::new(codes::NOT_A_VARIABLE, e.span, "a variable is needed here").help(help));
                 None
             }
         }
+    }
+
+    /// What to write for an expression that is no variable.
+    fn no_place_help(&mut self, e: &ast::Expr) -> String {
+        if let ast::ExprKind::Call(call) = &e.kind
+            && let ast::ExprKind::Name(name) = &call.callee.kind
+            && let Found::Var(var) = self.lookup(name)
+        {
+            let ty = self.type_of_var(var);
+            match self.cx.defs.types.get(ty) {
+                Type::Array { .. } | Type::AnyArray { .. } => {
+                    return format!("an element of an array is written `{}[...]`", name.text);
+                }
+                Type::Instance(_) => {
+                    return format!("call the instance as a statement, then use its outputs: `{}.output`", name.text);
+                }
+                _ => {}
+            }
+        }
+        "this is an expression; assign it to a variable first".into()
     }
 
     fn var_place(&mut self, name: &'a ast::Name) -> Option<Place> {
@@ -149,6 +169,8 @@ impl<'a> Checker<'_, 'a> {
                 None
             }
             Found::Reported => None,
+            // Told where it was called.
+            Found::Pou(_) if !self.cx.first_report(self.scope, &format!("pou {}", fold(&name.text))) => None,
             found => {
                 let what = match found {
                     Found::Action(_) => "an action",
@@ -165,6 +187,9 @@ impl<'a> Checker<'_, 'a> {
                     .help(match found {
                         Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::FunctionBlock => {
                             format!("declare an instance of it: `inst : {};`", name.text)
+                        }
+                        Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::Program => {
+                            "programs share variables as VAR_GLOBAL; a FUNCTION_BLOCK shows its outputs".into()
                         }
                         Found::Pou(_) => format!("call it: `{}(...)`", name.text),
                         Found::Action(_) => format!("call it: `{}();`", name.text),
@@ -336,7 +361,7 @@ impl<'a> Checker<'_, 'a> {
             self.report(
                 Diagnostic::new(codes::WRONG_SUBSCRIPTS, span, message)
                     .also(base.span, format!("this is {ty}"))
-                    .help("write one subscript per dimension, separated by commas"),
+                    .help("write one subscript per dimension, separated by commas in one pair of brackets: `a[1, 2]`"),
             );
             return None;
         }
@@ -627,6 +652,17 @@ impl<'a> Checker<'_, 'a> {
 fn is_place(e: &ast::Expr) -> bool {
     use ast::ExprKind::*;
     matches!(e.kind, Name(_) | Member(..) | Index(..) | Part(..) | Deref(_) | Address(_) | Error)
+}
+
+/// What IEC 61131-3 has for a word of another language.
+fn foreign_word(word: &str) -> Option<&'static str> {
+    Some(match word.to_ascii_uppercase().as_str() {
+        "BREAK" => "a branch of a CASE ends before the next value; EXIT leaves a loop",
+        "DEFAULT" | "OTHERS" | "OTHERWISE" => "all other values of a CASE stand behind ELSE, without `:`",
+        "NIL" | "NULLPTR" | "NONE" => "a reference to nothing is NULL",
+        "THIS" | "SELF" => "inside a POU its variables are named alone",
+        _ => return None,
+    })
 }
 
 /// Names as a message lists them: the first dozen.

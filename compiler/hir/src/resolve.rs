@@ -297,6 +297,14 @@ impl<'a> Cx<'a> {
             None => Elem::Int,
             Some(base) => match Elem::from_name(&base.text) {
                 Some(elem) if elem.is_integer() || elem.is_bits() => elem,
+                None if self.pous.contains_key(&fold(&base.text)) || self.types.contains_key(&fold(&base.text)) => {
+                    let text = &base.text;
+                    self.push(
+                        Diagnostic::new(codes::BAD_INITIALISER, te.span, format!("`{text}` takes no values here"))
+                            .help(format!("initial values stand behind `:=`: `x : {text} := (a := 1)`")),
+                    );
+                    return Resolved::error();
+                }
                 _ => {
                     self.push(
                         Diagnostic::new(

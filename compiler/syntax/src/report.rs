@@ -20,12 +20,22 @@ pub struct Reporter<'d> {
     lost: FxHashSet<String>,
     /// Declarations whose name is missing.
     unnamed: usize,
+    /// Reserved words, in upper case, that were declared as names.
+    reserved: FxHashSet<String>,
 }
 
 impl<'d> Reporter<'d> {
     /// For `file`, into `diags`.
     pub fn new(file: FileId, diags: &'d mut Diagnostics) -> Self {
-        Self { file, diags, left: MAX_MESSAGES, doubtful: Vec::new(), lost: FxHashSet::default(), unnamed: 0 }
+        Self {
+            file,
+            diags,
+            left: MAX_MESSAGES,
+            doubtful: Vec::new(),
+            lost: FxHashSet::default(),
+            unnamed: 0,
+            reserved: FxHashSet::default(),
+        }
     }
 
     /// Bytes `start..end` of the file.
@@ -51,6 +61,16 @@ impl<'d> Reporter<'d> {
     /// A declaration that may have been that of `name` could not be read.
     pub fn lose(&mut self, name: &str) {
         self.lost.insert(name.to_ascii_uppercase());
+    }
+
+    /// A reserved word was declared as a name, which was reported: it is one now.
+    pub fn take_for_name(&mut self, word: &str) {
+        self.reserved.insert(word.to_ascii_uppercase());
+    }
+
+    /// Whether a reserved word was declared as a name.
+    pub fn is_taken_for_name(&self, word: &str) -> bool {
+        !self.reserved.is_empty() && self.reserved.contains(&word.to_ascii_uppercase())
     }
 
     /// A declaration lacks its name.

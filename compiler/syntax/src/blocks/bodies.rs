@@ -225,6 +225,14 @@ impl Blocks<'_, '_> {
             }
             Tok::Then | Tok::Do => self.missing_opener(t.kind),
             kind => {
+                if kind == Tok::Case && self.at_statement() && self.labels_case() {
+                    let message = "CASE stands once, before all of its values";
+                    self.report.push(
+                        self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("write the value alone: `1:`"),
+                    );
+                    self.at += 1;
+                    return;
+                }
                 if let Some(block) = Construct::statement(kind) {
                     // A condition of a transition has no statements.
                     return self.open(block, kind);
@@ -232,6 +240,13 @@ impl Blocks<'_, '_> {
             }
         }
         self.take(t.kind);
+    }
+
+    /// Whether the CASE that comes next stands before a value of the CASE that is open, as other languages write it.
+    fn labels_case(&self) -> bool {
+        let ends = |k: Tok| matches!(k, Tok::Colon | Tok::Semi | Tok::Of | Tok::Assign | Tok::EndCase | Tok::StartItem);
+        let open = self.stack.last().is_some_and(|f| f.block == Construct::Case && f.has_of);
+        open && (1..).map(|n| self.peek(n).kind).find(|k| ends(*k)) == Some(Tok::Colon)
     }
 
     fn name_in_statement(&mut self, t: Token) {

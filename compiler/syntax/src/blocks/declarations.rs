@@ -239,6 +239,9 @@ impl Blocks<'_, '_> {
         let start = self.at_declaration();
         let in_pou = self.top() == Some(Construct::Var) && self.stack.len() > 1;
         match t.kind {
+            Tok::Struct if start && self.peek(1).kind == Tok::Id && self.peek(2).kind == Tok::Id => {
+                return self.struct_before_name(t);
+            }
             Tok::Struct => return self.open(Construct::Struct, Tok::Struct),
             Tok::Union => return self.open(Construct::Union, Tok::Union),
             Tok::Var | Tok::VarConfig | Tok::VarAccess if !self.names_something() => {
@@ -266,6 +269,21 @@ impl Blocks<'_, '_> {
         self.take(t.kind);
     }
 
+    /// `STRUCT Point x : INT;`, as C writes it, for `Point : STRUCT x : INT;`.
+    fn struct_before_name(&mut self, t: Token) {
+        let name = self.peek(1);
+        let text = name.text(self.text);
+        self.report.push(
+            self.report
+                .at(codes::UNEXPECTED, t.start, name.end, "the name of a structure stands before STRUCT")
+                .help(format!("write `{text} : STRUCT`")),
+        );
+        self.emit(name);
+        self.insert(Tok::Colon);
+        self.open(Construct::Struct, Tok::Struct);
+        self.at += 1;
+    }
+
     /// Whether the next token, a reserved word, stands where only a name can.
     fn names_something(&self) -> bool {
         self.peek(0).kind.is_reserved() && matches!(self.peek(1).kind, Tok::Colon | Tok::Comma)
@@ -274,6 +292,7 @@ impl Blocks<'_, '_> {
     /// A reserved word that stands for a name.
     pub(super) fn reserved_name(&mut self, t: Token) {
         let word = t.text(self.text);
+        self.report.take_for_name(word);
         self.report.push(
             self.report
                 .at(codes::RESERVED_WORD, t.start, t.end, format!("`{word}` is a reserved word"))

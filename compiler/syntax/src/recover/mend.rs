@@ -12,6 +12,7 @@ impl Recovery<'_, '_> {
     pub(super) fn insert_missing(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
         self.wrong_sign(refused)
             .or_else(|| self.doubled(refused))
+            .or_else(|| self.foreign_sign(refused, segment))
             .or_else(|| self.value_on_next_line(refused, segment))
             .or_else(|| self.reserved_word(refused))
             .or_else(|| self.branch_word(refused, segment))
@@ -87,6 +88,61 @@ impl Recovery<'_, '_> {
                 self.tokens.remove(at);
                 let message = self.report.at(codes::UNEXPECTED, start, end, "`:=` stands twice");
                 Some(message.help("remove one"))
+            }
+            _ => None,
+        }
+    }
+
+    /// `ELSE:`, `ARRAY [1:5]`, `ARRAY [5]`, `AT QX0.1`: what other languages write.
+    fn foreign_sign(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let t = *self.tokens.get(at)?;
+        let before = self.kind(at.wrapping_sub(1));
+        let returns = at == segment.start + 1 && before == Tok::Id && !t.first && refused.wants(";") && {
+            self.tokens[at - 1].text(self.text).eq_ignore_ascii_case("RETURN")
+        };
+        match t.kind {
+            kind if returns && (is_operand_start(kind) || kind == Tok::LParen) => {
+                let end = self.bytes(segment.end - 1).1;
+                self.tokens.drain(at..segment.end);
+                let message = self.report.at(codes::UNEXPECTED, t.start, end, "RETURN takes no value");
+                Some(message.help("a function gives its value by its name: `Name := value; RETURN;`"))
+            }
+            Tok::Colon if before == Tok::Else => {
+                self.tokens.remove(at);
+                let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "no `:` stands behind ELSE");
+                Some(message.help("remove it"))
+            }
+            Tok::Colon if refused.wants("..") && !refused.wants(":") => {
+                self.tokens[at].kind = Tok::DotDot;
+                let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "bounds are not separated by `:`");
+                Some(message.help("write `..`: `ARRAY [1..5] OF INT`"))
+            }
+            Tok::RBracket if refused.wants("..") && before == Tok::Int => {
+                let count = self.tokens[at - 1];
+                let text = count.text(self.text);
+                self.insert(at, Tok::DotDot);
+                self.tokens.insert(at + 1, count);
+                let message = self.report.at(
+                    codes::UNEXPECTED,
+                    count.start,
+                    count.end,
+                    "an array has a lower and an upper bound",
+                );
+                let last = text.parse::<u64>().ok().and_then(|n| n.checked_sub(1));
+                let bounds = last.map_or(String::new(), |last| format!("`[0..{last}]` or "));
+                Some(message.help(format!("write {bounds}`[1..{text}]`")))
+            }
+            Tok::Id if t.text(self.text).eq_ignore_ascii_case("AT") && refused.wants(":") => {
+                let colon = self.tokens[at..segment.end].iter().position(|t| t.kind == Tok::Colon)? + at;
+                let (start, end) = (self.bytes(at + 1).0, self.bytes(colon - 1).1);
+                if colon == at + 1 || self.surroundings(at) != Surroundings::Declarations {
+                    return None;
+                }
+                let text = &self.text[start as usize..end as usize];
+                let message = self.report.at(codes::BAD_ADDRESS, start, end, format!("`{text}` is no address"));
+                self.tokens.drain(at..colon);
+                Some(message.help("an address begins with `%`: `AT %QX0.1`"))
             }
             _ => None,
         }
@@ -368,12 +424,37 @@ impl Recovery<'_, '_> {
             _ => "an expression is missing here".to_string(),
         };
         let message = self.missing(codes::MISSING_OPERAND, at, message);
+        let braces = self.text.get(self.end_before(at) as usize..self.bytes(at).0 as usize);
+        let step = match braces {
+            Some(gap) if gap.contains('{') => Some(
+                "braces hold pragmas; values of components stand in `(x := 1, y := 2)`, of arrays in `[1, 2]`".into(),
+            ),
+            _ => self.step_habit(at),
+        };
         self.insert(at, Bad);
+        if let Some(help) = step {
+            return Some(message.help(help));
+        }
         Some(message.help(if value {
             "write a name, or remove a `,`"
         } else {
             "write a literal, a variable or a call there"
         }))
+    }
+
+    /// What to write for `i++` and `i += 1`, whose second sign is the one at or before `at`.
+    fn step_habit(&self, at: usize) -> Option<String> {
+        let signs = |k| matches!(k, Tok::Plus | Tok::Minus | Tok::Star | Tok::Op);
+        let [name, first, second] =
+            if self.kind(at) == Tok::Eq { [2, 1, 0] } else { [3, 2, 1] }.map(|n| at.checked_sub(n));
+        let [name, first, second] = [name?, first?, second?].map(|n| self.tokens.get(n).copied());
+        let (name, first, second) = (name?, first?, second?);
+        let pair = first.kind == second.kind && matches!(first.kind, Tok::Plus | Tok::Minus) || second.kind == Tok::Eq;
+        if name.kind != Tok::Id || !signs(first.kind) || !pair || first.end != second.start {
+            return None;
+        }
+        let (name, sign) = (name.text(self.text), first.text(self.text));
+        Some(format!("write `{name} := {name} {sign} {}`", if second.kind == Tok::Eq { "..." } else { "1" }))
     }
 
     /// Whether `at` stands between the values of an enumeration: in the parenthesis behind the `:` of a declaration.

@@ -20,6 +20,9 @@ impl Recovery<'_, '_> {
             None => format!("{found} cannot stand here"),
         };
         let mut diagnostic = self.report.at(codes::UNEXPECTED, start, end, message);
+        if let Some(help) = self.habit(refused.at) {
+            return diagnostic.help(help);
+        }
         if self.kind(refused.at) == Tok::Comma && self.surroundings(refused.at) == Surroundings::Declarations {
             diagnostic = diagnostic.help("the values of an enumeration stand in parentheses: `(Red, Green)`");
         }
@@ -29,6 +32,23 @@ impl Recovery<'_, '_> {
             diagnostic = diagnostic.help(format!("`{word}` is a reserved word and cannot be a name"));
         }
         diagnostic
+    }
+
+    /// What to write for a form of other languages that ends at `at`.
+    fn habit(&self, at: usize) -> Option<String> {
+        let (t, before) = (*self.tokens.get(at)?, *self.tokens.get(at.checked_sub(1)?)?);
+        let text = before.text(self.text);
+        match (before.kind, t.kind) {
+            (Tok::Int, Tok::Comma) if before.end == t.start && self.bytes(at + 1).0 == t.end => {
+                let fraction = self.tokens.get(at + 1).filter(|t| t.kind == Tok::Int)?.text(self.text);
+                Some(format!("the sign of a fraction is the point: `{text}.{fraction}`"))
+            }
+            (Tok::Address, Tok::Comma) => Some("the parts of an address are separated by `.`: `%QX0.1`".into()),
+            (Tok::Id, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => {
+                Some(format!("an array is declared `{text} : ARRAY [0..4] OF INT`"))
+            }
+            _ => None,
+        }
     }
 
     /// The token `at` as a message names it.
