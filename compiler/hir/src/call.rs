@@ -9,7 +9,7 @@ use crate::rules::{self, Implicit};
 use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
-use plcc_syntax::ast;
+use plcc_syntax::ast::{self, BinaryOp};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
@@ -248,7 +248,7 @@ impl<'a> Checker<'_, 'a> {
                 name.span,
                 format!("there is no function or instance `{}`", name.text),
             )
-            .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
+            .help_if(foreign_function(&key).map(String::from).or(hint.map(|h| format!("did you mean `{h}`?")))),
         );
         Target::Reported
     }
@@ -329,6 +329,18 @@ impl<'a> Checker<'_, 'a> {
         for arg in call.args {
             match &arg.kind {
                 ast::ArgKind::Positional(e) => {
+                    if let Some((name, at)) = self.equals_for_assign(pou, e) {
+                        self.report(
+                            Diagnostic::new(
+                                codes::EQUALS_FOR_ASSIGN,
+                                at,
+                                "`=` compares, it gives no value to an input",
+                            )
+                            .help(format!("write `{name} := ...`")),
+                        );
+                        fine = false;
+                        continue;
+                    }
                     let Some(param) = next.next() else {
                         self.too_many(pou, given_count, arg.span);
                         return None;
@@ -414,6 +426,14 @@ impl<'a> Checker<'_, 'a> {
         }
         fine &= self.all_in_outs_given(pou, &given, call.at);
         fine.then_some(out)
+    }
+
+    /// The parameter in `parameter = value`, where that compares nothing, and the place of the `=`.
+    fn equals_for_assign(&self, pou: PouId, e: &ast::Expr) -> Option<(SmolStr, Span)> {
+        let ast::ExprKind::Binary(BinaryOp::Eq, at, left, _) = &e.kind else { return None };
+        let ast::ExprKind::Name(name) = &left.kind else { return None };
+        let known = self.cx.pou_slots[pou].scope.contains_key(&fold(&name.text));
+        (known && matches!(self.lookup(name), Found::Missing)).then(|| (name.text.clone(), *at))
     }
 
     /// The output that `variable := output` was meant to fetch: `name` is no parameter but a variable here, `value` the
@@ -733,4 +753,20 @@ impl<'a> Checker<'_, 'a> {
             Special::Bound { upper } => self.bound(upper, call, span),
         }
     }
+}
+
+/// What IEC 61131-3 has for a function of another language, by its folded name.
+fn foreign_function(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "POW" | "POWER" => "a power is written `x ** y` or EXPT(x, y)",
+        "SQR" | "SQUARE" => "a square is written `x * x`, a square root SQRT(x)",
+        "STRLEN" | "LENGTH" => "the length of a text is LEN(s)",
+        "SUBSTR" | "SUBSTRING" => "a part of a text is MID(s, length, position), LEFT or RIGHT",
+        "CEILING" => "the next greater integer is CEIL(x)",
+        "FABS" => "the absolute value is ABS(x)",
+        "PRINT" | "PRINTF" | "PUTS" | "WRITELN" | "ECHO" => {
+            "a program prints nothing; `--watch` and `--trace` show variables"
+        }
+        _ => return None,
+    })
 }

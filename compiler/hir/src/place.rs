@@ -64,7 +64,8 @@ impl<'a> Checker<'_, 'a> {
         });
         let globals = self.cx.defs.globals.iter().map(|v| self.cx.defs.vars[*v].name.as_str());
         let values = self.cx.defs.enums.iter().flat_map(|e| e.values.iter().map(|(n, _, _)| n.as_str()));
-        locals.unwrap_or_default().into_iter().chain(globals).chain(values).collect()
+        let words = ["TRUE", "FALSE", "NULL"];
+        locals.unwrap_or_default().into_iter().chain(globals).chain(values).chain(words).collect()
     }
 
     /// Reports a name that means nothing, once per POU.
@@ -661,7 +662,12 @@ fn foreign_word(word: &str) -> Option<&'static str> {
         "DEFAULT" | "OTHERS" | "OTHERWISE" => "all other values of a CASE stand behind ELSE, without `:`",
         "NIL" | "NULLPTR" | "NONE" => "a reference to nothing is NULL",
         "THIS" | "SELF" => "inside a POU its variables are named alone",
-        _ => return None,
+        word => {
+            let digits = word.strip_prefix("TIME").or(word.strip_prefix('T'))?;
+            let unit = digits.trim_start_matches(|c: char| c.is_ascii_digit());
+            let duration = unit.len() < digits.len() && matches!(unit, "D" | "H" | "M" | "S" | "MS" | "US" | "NS");
+            return duration.then_some("a duration is written with `#`: `T#5s`");
+        }
     })
 }
 

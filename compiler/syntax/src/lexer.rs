@@ -96,6 +96,8 @@ impl Lexer<'_, '_, '_> {
             b'(' if self.byte(1) == b'*' => self.block_comment(b'(', b')'),
             b'/' if self.byte(1) == b'*' => self.block_comment(b'/', b'/'),
             b'/' if self.byte(1) == b'/' => self.at = self.line_end(),
+            b'#' if self.first => self.foreign_comment(1),
+            b'-' if self.first && self.byte(1) == b'-' && self.between_statements() => self.foreign_comment(2),
             b'{' => self.pragma(),
             b'\'' | b'"' => self.string(),
             b'%' => self.address(),
@@ -312,6 +314,24 @@ impl Lexer<'_, '_, '_> {
         self.push(kind, length);
     }
 
+    /// Whether what stands before goes on with no expression.
+    fn between_statements(&self) -> bool {
+        let Some(last) = self.out.tokens.last() else { return true };
+        last.kind == Tok::Semi || last.kind.is_reserved() && !matches!(last.kind, Tok::Op | Tok::Not)
+    }
+
+    /// A line that begins as a comment does in another language.
+    fn foreign_comment(&mut self, length: usize) {
+        let (start, end) = (self.at, self.at + length);
+        let message = format!("`{}` begins no comment", &self.text[start..end]);
+        self.report.push(
+            self.report
+                .at(codes::FOREIGN_OPERATOR, start as u32, end as u32, message)
+                .help("write `//` for the rest of a line, `(* ... *)` for any text"),
+        );
+        self.at = self.line_end();
+    }
+
     /// A sign of another language, taken for the one that is meant.
     fn foreign(&mut self, kind: Tok, length: usize, meant: &str) {
         let (start, end) = (self.at as u32, (self.at + length) as u32);
@@ -382,6 +402,9 @@ impl Lexer<'_, '_, '_> {
                 self.report.at(codes::BAD_CHARACTER, start, end, format!("the character {shown} has no meaning here"));
             if c == '\0' {
                 message = message.help("this does not look like a text file");
+            }
+            if c == '?' {
+                message = message.help("a choice is written with IF, or as SEL(condition, if_false, if_true)");
             }
             self.report.push(message);
             // A control character was not written by anybody: what stands around it is still what it seems to be.

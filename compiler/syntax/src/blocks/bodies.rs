@@ -257,6 +257,12 @@ impl Blocks<'_, '_> {
             if self.is(0, "JMP") && self.peek(1).kind == Tok::Id && !self.peek(1).first {
                 return self.take(Tok::Jmp);
             }
+            if self.is(0, "GOTO") && self.peek(1).kind == Tok::Id && !self.peek(1).first {
+                self.report.push(
+                    self.report.at(codes::MISSPELLED, t.start, t.end, "a jump is not written GOTO").help("write `JMP`"),
+                );
+                return self.take(Tok::Jmp);
+            }
             let chart = self.top() == Some(Construct::Transition) && (self.step_here() || self.transition_here());
             if chart {
                 return self.close_above(self.stack.len() - 1, t);

@@ -163,6 +163,19 @@ impl Blocks<'_, '_> {
 
     /// A word one letter away from a section keyword, before something that looks like a declaration.
     fn misspelled_section(&mut self, t: Token) -> bool {
+        let upper = t.text(self.text).to_ascii_uppercase();
+        if let Some(qualifier) = upper.strip_prefix("VAR_").filter(|q| QUALIFIERS.contains(q) && t.first) {
+            self.report.push(
+                self.report
+                    .at(codes::MISSPELLED, t.start, t.end, format!("`{upper}` is no section of variables"))
+                    .help(format!("write `VAR {qualifier}`, two words")),
+            );
+            self.open(Construct::Var, Tok::Var);
+            let at = t.end;
+            let start = at - qualifier.len() as u32;
+            self.emit(Token { kind: Tok::Qualifier, first: false, start, end: at });
+            return true;
+        }
         let declares = self.peek(1).kind == Tok::Id
             && (matches!(self.peek(2).kind, Tok::Colon | Tok::Comma) || self.peek(2).kind == Tok::Id);
         let text = t.text(self.text);

@@ -367,6 +367,19 @@ impl Recovery<'_, '_> {
             return Some(message.help("an array is written `ARRAY [1..3] OF INT`"));
         }
         let has_to = self.tokens[segment.clone()].iter().any(|t| t.kind == Tok::To);
+        let word = self.tokens.get(at).map_or("", |t| t.text(self.text));
+        if kind == Tok::Id && refused.wants("TO") && word.eq_ignore_ascii_case("DOWNTO") {
+            let (start, end) = self.bytes(at);
+            self.tokens[at].kind = Tok::To;
+            let message = self.report.at(codes::UNEXPECTED, start, end, "FOR has no DOWNTO");
+            return Some(message.help("write `FOR i := 10 TO 1 BY -1 DO`"));
+        }
+        if kind == Tok::Id && refused.wants("BY") && word.eq_ignore_ascii_case("STEP") {
+            let (start, end) = self.bytes(at);
+            self.tokens[at].kind = Tok::By;
+            let message = self.report.at(codes::MISSPELLED, start, end, "the step of a FOR stands behind BY");
+            return Some(message.help("write `BY`"));
+        }
         if refused.wants("TO") && !has_to && (is_operand_start(kind) || kind == Tok::LParen) {
             let message = self.missing(codes::MISSING_WORD, at, "TO is missing here");
             self.insert(at, Tok::To);

@@ -43,12 +43,37 @@ impl Recovery<'_, '_> {
                 let fraction = self.tokens.get(at + 1).filter(|t| t.kind == Tok::Int)?.text(self.text);
                 Some(format!("the sign of a fraction is the point: `{text}.{fraction}`"))
             }
+            (_, Tok::Assign) if self.in_condition(at) => Some("`:=` assigns; two values are compared with `=`".into()),
+            (_, Tok::Assign) if self.surroundings(at) == Surroundings::Statements => {
+                Some("one statement assigns to one variable; write several".into())
+            }
+            (_, Tok::Comma) if self.in_condition(at) => Some("conditions are joined with AND or OR".into()),
+            (Tok::Caret, Tok::Int | Tok::Lit | Tok::Id | Tok::LParen) => {
+                Some("`^` follows a reference; a power is written `x ** y`".into())
+            }
+            (Tok::Id, Tok::Id)
+                if self.kind(at.wrapping_sub(2)) == Tok::For && t.text(self.text).eq_ignore_ascii_case("IN") =>
+            {
+                Some(format!("write `FOR {text} := first TO last DO`"))
+            }
             (Tok::Address, Tok::Comma) => Some("the parts of an address are separated by `.`: `%QX0.1`".into()),
             (Tok::Id, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => {
                 Some(format!("an array is declared `{text} : ARRAY [0..4] OF INT`"))
             }
             _ => None,
         }
+    }
+
+    /// Whether `at` stands in a condition: behind IF, ELSIF, WHILE or UNTIL, outside of any parenthesis.
+    fn in_condition(&self, at: usize) -> bool {
+        let start = self.segment(at).start;
+        let opener = self.kind(start.wrapping_sub(1));
+        let depth = self.tokens[start.min(at)..at].iter().fold(0i32, |n, t| match t.kind {
+            Tok::LParen | Tok::LBracket => n + 1,
+            Tok::RParen | Tok::RBracket => n - 1,
+            _ => n,
+        });
+        matches!(opener, Tok::If | Tok::Elsif | Tok::While | Tok::Until) && depth == 0
     }
 
     /// The token `at` as a message names it.
