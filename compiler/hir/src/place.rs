@@ -194,6 +194,7 @@ impl<'a> Checker<'_, 'a> {
                         }
                         Found::Pou(_) => format!("call it: `{}(...)`", name.text),
                         Found::Action(_) => format!("call it: `{}();`", name.text),
+                        Found::Type => format!("declare a variable of it: `x : {};`", name.text),
                         _ => "a variable is needed here".into(),
                     }),
                 );
@@ -309,10 +310,16 @@ impl<'a> Checker<'_, 'a> {
             }
             _ => {
                 let ty = self.cx.type_name(base.ty);
+                let help = match self.cx.defs.types.get(base.ty) {
+                    Type::Array { .. } | Type::AnyArray { .. } => {
+                        format!("an element has components: `{}[...].{}`", self.place_text(&base), name.text)
+                    }
+                    _ => "structures, unions and instances of function blocks have components".into(),
+                };
                 self.report(
                     Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, format!("{ty} has no component `{}`", name.text))
                         .also(base.span, format!("this is {ty}"))
-                        .help("structures, unions and instances of function blocks have components"),
+                        .help(help),
                 );
                 None
             }

@@ -228,11 +228,13 @@ impl Blocks<'_, '_> {
     pub(super) fn misspelled_end(&mut self, t: Token) -> bool {
         let next = self.peek(1);
         let text = t.text(self.text);
-        if !(next.first || next.kind == Tok::Semi) || !(5..20).contains(&text.len()) {
+        if !(next.first || matches!(next.kind, Tok::Semi | Tok::StartItem)) || !(5..20).contains(&text.len()) {
             return false;
         }
         let upper = text.to_ascii_uppercase();
-        let open = self.stack.iter().rev().map(|f| f.block).find(|b| is_close(&upper, b.end().describe()));
+        // A slip of the hand, or the END word cut short: END_CONFIG.
+        let means = |end: &str| is_close(&upper, end) || upper.len() > 6 && end.starts_with(&upper);
+        let open = self.stack.iter().rev().map(|f| f.block).find(|b| means(b.end().describe()));
         let Some(block) = open else { return false };
         let meant = block.end().describe();
         self.report.push(

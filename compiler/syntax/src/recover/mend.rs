@@ -108,6 +108,11 @@ impl Recovery<'_, '_> {
                 let message = self.report.at(codes::UNEXPECTED, t.start, end, "RETURN takes no value");
                 Some(message.help("a function gives its value by its name: `Name := value; RETURN;`"))
             }
+            Tok::Colon if refused.wants(":=") && self.opener(at).is_some() && before == Tok::Id => {
+                self.tokens[at].kind = Tok::Assign;
+                let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "`:` gives no value");
+                Some(message.help("write `:=`"))
+            }
             Tok::Colon if before == Tok::Else => {
                 self.tokens.remove(at);
                 let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "no `:` stands behind ELSE");
@@ -457,6 +462,10 @@ impl Recovery<'_, '_> {
 
     /// What to write for `i++` and `i += 1`, whose second sign is the one at or before `at`.
     fn step_habit(&self, at: usize) -> Option<String> {
+        let arrow = self.tokens.get(at).is_some_and(|t| t.text(self.text) == ">");
+        if arrow && self.kind(at.wrapping_sub(1)) == Tok::Minus && self.bytes(at).0 == self.end_before(at) {
+            return Some("a component is written with a point: `m.speed`, behind a reference `p^.speed`".into());
+        }
         let signs = |k| matches!(k, Tok::Plus | Tok::Minus | Tok::Star | Tok::Op);
         let [name, first, second] =
             if self.kind(at) == Tok::Eq { [2, 1, 0] } else { [3, 2, 1] }.map(|n| at.checked_sub(n));

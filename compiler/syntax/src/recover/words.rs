@@ -23,7 +23,18 @@ impl Recovery<'_, '_> {
         if let Some(help) = self.habit(refused.at) {
             return diagnostic.help(help);
         }
-        if self.kind(refused.at) == Tok::Comma && self.surroundings(refused.at) == Surroundings::Declarations {
+        let segment = self.segment(refused.at);
+        let before = &self.tokens[segment.start.min(refused.at)..refused.at];
+        let initial = before.iter().any(|t| t.kind == Tok::Assign);
+        let next_declares = self.kind(refused.at + 2) == Tok::Colon && before.iter().any(|t| t.kind == Tok::Colon);
+        let declares = self.surroundings(refused.at) == Surroundings::Declarations;
+        if self.kind(refused.at) == Tok::Comma && declares && (initial || next_declares) {
+            diagnostic = diagnostic.help(if initial {
+                "components are initialised by name, `(x := 1, y := 2)`, arrays in brackets, `[1, 2]`"
+            } else {
+                "a declaration ends with `;`"
+            });
+        } else if self.kind(refused.at) == Tok::Comma && declares {
             diagnostic = diagnostic.help("the values of an enumeration stand in parentheses: `(Red, Green)`");
         }
         let t = self.tokens.get(refused.at);
@@ -55,6 +66,9 @@ impl Recovery<'_, '_> {
                 if self.kind(at.wrapping_sub(2)) == Tok::For && t.text(self.text).eq_ignore_ascii_case("IN") =>
             {
                 Some(format!("write `FOR {text} := first TO last DO`"))
+            }
+            (Tok::Id, Tok::Semi) if self.kind(self.segment(at).start) == Tok::Program => {
+                Some("an instance has a name of its own: `PROGRAM P1 WITH Fast : Main;`".into())
             }
             (Tok::Address, Tok::Comma) => Some("the parts of an address are separated by `.`: `%QX0.1`".into()),
             (Tok::Id, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => {
