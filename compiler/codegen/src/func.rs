@@ -39,6 +39,8 @@ pub struct Env<'a> {
     pub shapes: IndexVec<FuncId, Shape>,
     /// The number of each function in the module.
     pub ids: IndexVec<FuncId, cranelift_module::FuncId>,
+    /// Whether every machine of this kind has registers of 16 bytes.
+    pub vectors: bool,
     /// Number and signature of each body of the standard library that is called, by symbol.
     pub rt: FxHashMap<&'static str, (cranelift_module::FuncId, Signature)>,
 }
@@ -95,7 +97,7 @@ pub struct Translator<'a, 'f> {
     region_bytes: u32,
     values: IndexVec<ValueId, Option<Value>>,
     /// Register values of constants.
-    constants: IndexVec<ValueId, Option<u64>>,
+    pub(crate) constants: IndexVec<ValueId, Option<u64>>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
     rt_callees: FxHashMap<&'static str, FuncRef>,
@@ -234,14 +236,21 @@ impl<'a, 'f> Translator<'a, 'f> {
         if self.b.current_block() != Some(here) {
             self.b.switch_to_block(here);
         }
-        for inst in &block.insts {
-            self.inst(inst);
+        let mut n = 0;
+        while n < block.insts.len() {
+            match self.constant_run(&block.insts[n..]) {
+                Some(count) => n += count,
+                None => {
+                    self.inst(&block.insts[n]);
+                    n += 1;
+                }
+            }
         }
         self.b.set_srcloc(SourceLoc::default());
         self.term(&block.term);
     }
 
-    fn inst(&mut self, inst: &'a Inst) {
+    pub(crate) fn inst(&mut self, inst: &'a Inst) {
         let loc = match inst {
             Inst::Call { exit, .. } | Inst::Check { exit, .. } | Inst::Poll { exit } => {
                 SourceLoc::new(exit.source.raw())

@@ -4,6 +4,7 @@
 //! Linking, files and messages to the user are the driver's business.
 
 mod compile;
+mod constants;
 mod entry;
 mod func;
 pub mod header;

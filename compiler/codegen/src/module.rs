@@ -66,7 +66,8 @@ pub fn declare<'a>(
         let signature = text_signature(func, module.isa(), config.default_call_conv);
         rt.insert(func.symbol, (module.declare_function(func.symbol, Linkage::Import, &signature)?, signature));
     }
-    let env = Env { program, config, shapes, ids, rt };
+    let vectors = matches!(module.isa().name(), "x64" | "aarch64");
+    let env = Env { program, config, shapes, ids, vectors, rt };
     let (made, entries) = entry::declare(module, &env, extras)?;
     Ok(Declared { env, made, entries })
 }

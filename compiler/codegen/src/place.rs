@@ -9,6 +9,9 @@ use plcc_stdlib::prim::Repr;
 /// Blocks of at most so many bytes are copied or cleared by single moves.
 const INLINE_BYTES: u32 = 64;
 
+/// Larger blocks are copied through vector registers. What was just written field by field comes out of smaller ones sooner.
+const VECTORS_FROM: u32 = 32;
+
 /// The flags of every access to the region: little-endian on every target, inside the region, any alignment.
 pub fn memory() -> MemFlagsData {
     MemFlagsData::new().with_notrap().with_endianness(Endianness::Little)
@@ -97,7 +100,7 @@ impl Translator<'_, '_> {
         let (to, to_offset) = self.address(dst);
         let (from, from_offset) = self.address(src);
         let mut parts = Vec::new();
-        for (at, ty) in chunks(bytes) {
+        for (at, ty) in chunks(bytes, self.env.vectors && bytes >= VECTORS_FROM) {
             let from = self.plus(from, from_offset, at);
             parts.push((at, self.b.ins().load(ty, memory(), from.0, from.1)));
         }
@@ -116,8 +119,13 @@ impl Translator<'_, '_> {
             return self.b.call_memset(self.env.config, to, zero, count);
         }
         let (to, to_offset) = self.address(dst);
-        for (at, ty) in chunks(bytes) {
-            let zero = self.b.ins().iconst(ty, 0);
+        for (at, ty) in chunks(bytes, self.env.vectors) {
+            let zero = if ty.is_vector() {
+                let zeros = self.b.func.dfg.constants.insert([0; 16][..].into());
+                self.b.ins().vconst(ty, zeros)
+            } else {
+                self.b.ins().iconst(ty, 0)
+            };
             let to = self.plus(to, to_offset, at);
             self.b.ins().store(memory(), zero, to.0, to.1);
         }
@@ -133,10 +141,12 @@ impl Translator<'_, '_> {
 }
 
 /// Cuts a block into moves, great ones first.
-fn chunks(bytes: u32) -> Vec<(i32, Type)> {
+fn chunks(bytes: u32, vectors: bool) -> Vec<(i32, Type)> {
     let mut parts = Vec::new();
     let mut at = 0;
-    for (size, ty) in [(8, types::I64), (4, types::I32), (2, types::I16), (1, types::I8)] {
+    let vector = vectors.then_some((16, types::I8X16));
+    let scalars = [(8, types::I64), (4, types::I32), (2, types::I16), (1, types::I8)];
+    for (size, ty) in vector.into_iter().chain(scalars) {
         while bytes - at >= size {
             parts.push((at as i32, ty));
             at += size;

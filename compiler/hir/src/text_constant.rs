@@ -101,7 +101,7 @@ impl Cx<'_> {
             }
             TextOp::Write(elem) => {
                 let raw = numbers.first().copied().unwrap_or(0);
-                region.built(&fns.write, longest_text(elem), &texts, &[raw, u64::from(elem.code())])
+                region.built(&fns.write, longest_text(elem), &texts, &[0, raw, u64::from(elem.code())])
             }
             TextOp::Concat => Value::Text(texts.iter().flat_map(|t| region.units(*t)).collect()),
             TextOp::Max | TextOp::Min | TextOp::Limit | TextOp::Sel | TextOp::Mux => {

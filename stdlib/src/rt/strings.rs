@@ -4,13 +4,17 @@
 //! A string is a place in the region and a capacity: its characters end at the first 0, or at the capacity if there is none.
 //! Every body is safe code on the bytes of the region, so it stays inside whatever the bytes are. What builds a string cuts
 //! it at the capacity of its destination and closes it with a 0; the destination must not overlap what is read, which is the
-//! caller's business: the lowering goes through a temporary unless it has proved that. Nothing allocates.
+//! caller's business: the lowering goes through a temporary unless it has proved that. Only what gives a part of one string
+//! (LEFT, RIGHT, MID, DELETE, a copy) may also be built over that string itself. Nothing allocates.
 
 use crate::elem::{Elem, Family};
 use crate::literal::prefix;
 use crate::value;
+use std::cmp::Ordering;
 use std::fmt;
 use std::ops::Range;
+
+mod narrow;
 
 /// Where a string lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +55,16 @@ pub struct TextFn {
     pub address: fn() -> *const u8,
 }
 
+impl TextFn {
+    /// Bytes of a character of one of its strings.
+    pub fn unit_bytes(&self, text: usize) -> u32 {
+        let wide = self.symbol.starts_with("plcc_wstring_");
+        // The conversion between the two kinds reads the other one.
+        let other = text == 1 && [STRING.recode.symbol, WSTRING.recode.symbol].contains(&self.symbol);
+        if wide != other { 2 } else { 1 }
+    }
+}
+
 /// The bodies for one kind of string.
 #[derive(Debug)]
 pub struct TextFns {
@@ -74,7 +88,7 @@ pub struct TextFns {
     pub replace: TextFn,
     /// FIND(IN1, IN2).
     pub find: TextFn,
-    /// `write(dst; raw, elem)`: a value as text.
+    /// `write(dst; n, raw, elem)`: a value as text behind the first `n` characters of `dst` (which has them); the new length.
     pub write: TextFn,
     /// `read(IN; elem)`: the value with which a text begins.
     pub read: TextFn,
@@ -118,6 +132,13 @@ trait Unit {
     fn set(bytes: &mut [u8], n: usize, unit: u16);
     /// Units before the first 0.
     fn before_zero(bytes: &[u8]) -> usize;
+    /// The order of two texts that end at their first 0 or with their slice.
+    fn compare(a: &[u8], b: &[u8]) -> Ordering;
+    /// The first unit at which a text that is not empty begins in another, which end likewise.
+    fn find(text: &[u8], wanted: &[u8]) -> Option<usize>;
+    /// Moves the characters that start at a byte, at most `limit`, to a byte in front of them or apart from them; how many
+    /// these were.
+    fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize;
 }
 
 struct Narrow;
@@ -132,19 +153,16 @@ impl Unit for Narrow {
         bytes[n] = unit as u8;
     }
     fn before_zero(bytes: &[u8]) -> usize {
-        // Strings are short: eight characters at once, without a call.
-        const LOW: u64 = 0x0101_0101_0101_0101;
-        let (words, rest) = bytes.as_chunks::<8>();
-        for (n, word) in words.iter().enumerate() {
-            let word = u64::from_le_bytes(*word);
-            // The lowest bit that is left marks the first zero.
-            let zeros = word.wrapping_sub(LOW) & !word & (LOW << 7);
-            if zeros != 0 {
-                return 8 * n + zeros.trailing_zeros() as usize / 8;
-            }
-        }
-        let zero = rest.iter().position(|unit| *unit == 0);
-        8 * words.len() + zero.unwrap_or(rest.len())
+        narrow::before_zero(bytes)
+    }
+    fn compare(a: &[u8], b: &[u8]) -> Ordering {
+        narrow::compare(a, b)
+    }
+    fn find(text: &[u8], wanted: &[u8]) -> Option<usize> {
+        narrow::find(text, wanted)
+    }
+    fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
+        narrow::advance(mem, from, limit, to)
     }
 }
 
@@ -159,14 +177,33 @@ impl Unit for Wide {
     fn before_zero(bytes: &[u8]) -> usize {
         bytes.chunks_exact(2).position(|unit| unit == [0, 0]).unwrap_or(bytes.len() / 2)
     }
+    fn compare(a: &[u8], b: &[u8]) -> Ordering {
+        let (m, n) = (Self::before_zero(a), Self::before_zero(b));
+        (0..m).map(|i| Self::get(a, i)).cmp((0..n).map(|i| Self::get(b, i)))
+    }
+    fn find(text: &[u8], wanted: &[u8]) -> Option<usize> {
+        let (text, wanted) = (&text[..2 * Self::before_zero(text)], &wanted[..2 * Self::before_zero(wanted)]);
+        let windows = (!wanted.is_empty()).then(|| text.windows(wanted.len()).step_by(2))?;
+        windows.into_iter().position(|window| window == wanted)
+    }
+    fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
+        let count = Self::before_zero(&mem[from..from + 2 * limit]);
+        mem.copy_within(from..from + 2 * count, to);
+        count
+    }
 }
 
-/// The bytes of the characters of a string. One outside the region (no caller has such) counts as cut or empty.
-fn characters<U: Unit>(mem: &[u8], text: Text) -> Range<usize> {
+/// The bytes that a string has for characters. One outside the region (no caller has such) counts as cut or empty.
+fn extent<U: Unit>(mem: &[u8], text: Text) -> Range<usize> {
     let start = (text.at as usize).min(mem.len());
     let room = (mem.len() - start) / U::BYTES;
-    let end = start + room.min(text.capacity as usize) * U::BYTES;
-    start..start + U::before_zero(&mem[start..end]) * U::BYTES
+    start..start + room.min(text.capacity as usize) * U::BYTES
+}
+
+/// The bytes of the characters of a string.
+fn characters<U: Unit>(mem: &[u8], text: Text) -> Range<usize> {
+    let all = extent::<U>(mem, text);
+    all.start..all.start + U::before_zero(&mem[all]) * U::BYTES
 }
 
 /// Units in a range of bytes.
@@ -184,40 +221,39 @@ fn first<U: Unit>(range: &Range<usize>, n: usize) -> Range<usize> {
     range.start..range.start + n * U::BYTES
 }
 
+/// The byte behind the first `n` characters of `dst`, their number, and how many more it can take; `None` if it lies outside.
+fn behind<U: Unit>(mem: &[u8], dst: Text, n: usize) -> Option<(usize, usize, usize)> {
+    let units = mem.len().saturating_sub(dst.at as usize) / U::BYTES;
+    let capacity = (dst.capacity as usize).min(units.checked_sub(1)?);
+    let n = n.min(capacity);
+    Some((dst.at as usize + n * U::BYTES, n, capacity - n))
+}
+
 /// Copies characters behind the first `n` of `dst` and closes the string; the new length.
 fn put<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Range<usize>) -> usize {
-    let start = dst.at as usize;
-    let units = mem.len().saturating_sub(start) / U::BYTES;
-    let Some(room) = units.checked_sub(1) else { return 0 };
-    let n = n.min(dst.capacity as usize).min(room);
-    let more = count::<U>(&src).min(dst.capacity as usize - n).min(room - n);
-    copy(mem, first::<U>(&src, more), start + n * U::BYTES);
-    U::set(&mut mem[start..], n + more, 0);
+    let Some((to, n, room)) = behind::<U>(mem, dst, n) else { return 0 };
+    let more = count::<U>(&src).min(room);
+    if src.contains(&to) && to != src.start {
+        // Part of it would be written before it is read.
+        mem.copy_within(first::<U>(&src, more), to);
+    } else if to != src.start {
+        U::advance(mem, src.start, more, to);
+    }
+    U::set(&mut mem[to..], more, 0);
     n + more
 }
 
-/// Copies bytes. Most are few, and then a call of the system's library takes longer than the copy.
-fn copy(mem: &mut [u8], from: Range<usize>, to: usize) {
-    fn piece<const N: usize>(mem: &mut [u8], from: usize, to: usize) {
-        let piece: Option<[u8; N]> = mem[from..].first_chunk().copied();
-        if let (Some(piece), Some(target)) = (piece, mem[to..].first_chunk_mut()) {
-            *target = piece;
-        }
+/// The same for the first characters of a string, whose end need not be known.
+fn put_first<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Text, most: usize) -> usize {
+    let Some((to, n, room)) = behind::<U>(mem, dst, n) else { return 0 };
+    let all = extent::<U>(mem, src);
+    if all.contains(&to) {
+        let src = characters::<U>(mem, src);
+        return put::<U>(mem, dst, n, first::<U>(&src, most.min(count::<U>(&src))));
     }
-    // Two pieces that may overlap each other; both are read where nothing was written, as the target overlaps no source.
-    match from.len() {
-        0 => {}
-        1..4 => (0..from.len()).for_each(|n| mem[to + n] = mem[from.start + n]),
-        4..8 => {
-            piece::<4>(mem, from.start, to);
-            piece::<4>(mem, from.end - 4, to + from.len() - 4);
-        }
-        8..=16 => {
-            piece::<8>(mem, from.start, to);
-            piece::<8>(mem, from.end - 8, to + from.len() - 8);
-        }
-        _ => mem.copy_within(from, to),
-    }
+    let more = U::advance(mem, all.start, count::<U>(&all).min(room).min(most), to);
+    U::set(&mut mem[to..], more, 0);
+    n + more
 }
 
 /// A length or position as the language counts: a negative one is 0, one beyond any string is as good as its end.
@@ -225,37 +261,20 @@ fn number(raw: u64) -> usize {
     usize::try_from((raw as i64).max(0)).unwrap_or(usize::MAX)
 }
 
-/// The start of the characters from position P on, and behind L of them; `None` if P is outside.
-fn part(length: usize, l: u64, p: u64) -> Option<(usize, usize)> {
-    let start = number(p).checked_sub(1).filter(|start| *start < length)?;
-    Some((start, start + number(l).min(length - start)))
-}
-
 fn len<U: Unit>(mem: &mut [u8], [a]: [Text; 1], _: [u64; 0]) -> u64 {
     count::<U>(&characters::<U>(mem, a)).min(INT_MAX) as u64
 }
 
 fn compare<U: Unit>(mem: &mut [u8], [a, b]: [Text; 2], _: [u64; 0]) -> u64 {
-    let (a, b) = (&mem[characters::<U>(mem, a)], &mem[characters::<U>(mem, b)]);
-    let order = if U::BYTES == 1 {
-        a.cmp(b)
-    } else {
-        let unit = |s: &[u8], n: usize| U::get(s, n);
-        let (m, n) = (a.len() / U::BYTES, b.len() / U::BYTES);
-        (0..m).map(|i| unit(a, i)).cmp((0..n).map(|i| unit(b, i)))
-    };
-    order as i64 as u64
+    U::compare(&mem[extent::<U>(mem, a)], &mem[extent::<U>(mem, b)]) as i64 as u64
 }
 
 fn append<U: Unit>(mem: &mut [u8], [dst, src]: [Text; 2], [n]: [u64; 1]) -> u64 {
-    let src = characters::<U>(mem, src);
-    put::<U>(mem, dst, number(n), src) as u64
+    put_first::<U>(mem, dst, number(n), src, usize::MAX) as u64
 }
 
 fn left<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
-    let a = characters::<U>(mem, a);
-    let l = number(l).min(count::<U>(&a));
-    put::<U>(mem, dst, 0, first::<U>(&a, l)) as u64
+    put_first::<U>(mem, dst, 0, a, number(l)) as u64
 }
 
 fn right<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
@@ -264,58 +283,78 @@ fn right<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
     put::<U>(mem, dst, 0, from::<U>(&a, skip)) as u64
 }
 
+/// A string without its first `n` characters, which it has.
+fn behind_first<U: Unit>(text: Text, n: usize) -> Text {
+    Text { at: text.at + (n * U::BYTES) as u32, capacity: text.capacity - n as u32 }
+}
+
+/// Where a part of a string lies: from position P on L characters, or what there is of them. `None` if P is outside.
+struct Part {
+    start: usize,
+    end: usize,
+    /// The string goes on behind it.
+    more: bool,
+}
+
+impl Part {
+    fn new<U: Unit>(mem: &[u8], text: Text, l: u64, p: u64) -> Option<Self> {
+        let all = extent::<U>(mem, text);
+        let room = count::<U>(&all);
+        let start = number(p).checked_sub(1).filter(|start| *start < room)?;
+        let end = start.saturating_add(number(l)).min(room);
+        // Not further than is needed to know that.
+        let looked_at = end.max(start + 1);
+        let head = U::before_zero(&mem[first::<U>(&all, looked_at)]);
+        (start < head).then_some(Self { start, end: end.min(head), more: head == looked_at })
+    }
+}
+
 fn mid<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l, p]: [u64; 2]) -> u64 {
-    let a = characters::<U>(mem, a);
-    let (start, end) = part(count::<U>(&a), l, p).unwrap_or((0, 0));
-    let middle = from::<U>(&first::<U>(&a, end), start);
-    put::<U>(mem, dst, 0, middle) as u64
+    match Part::new::<U>(mem, a, 0, p) {
+        Some(part) => put_first::<U>(mem, dst, 0, behind_first::<U>(a, part.start), number(l)) as u64,
+        None => put_first::<U>(mem, dst, 0, a, 0) as u64,
+    }
 }
 
 fn insert<U: Unit>(mem: &mut [u8], [dst, a, b]: [Text; 3], [p]: [u64; 1]) -> u64 {
-    let (a, b) = (characters::<U>(mem, a), characters::<U>(mem, b));
     let p = number(p);
-    if p > count::<U>(&a) {
-        return put::<U>(mem, dst, 0, a) as u64;
+    let all = extent::<U>(mem, a);
+    if p > count::<U>(&all) || U::before_zero(&mem[first::<U>(&all, p)]) < p {
+        return put_first::<U>(mem, dst, 0, a, usize::MAX) as u64;
     }
-    splice::<U>(mem, dst, a, (p, p), Some(b))
+    splice::<U>(mem, dst, a, Part { start: p, end: p, more: true }, Some(b))
 }
 
 fn delete<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l, p]: [u64; 2]) -> u64 {
-    let a = characters::<U>(mem, a);
-    let length = count::<U>(&a);
-    splice::<U>(mem, dst, a, part(length, l, p).unwrap_or((length, length)), None)
+    match Part::new::<U>(mem, a, l, p) {
+        Some(part) if part.start < part.end => splice::<U>(mem, dst, a, part, None),
+        _ => put_first::<U>(mem, dst, 0, a, usize::MAX) as u64,
+    }
 }
 
 fn replace<U: Unit>(mem: &mut [u8], [dst, a, b]: [Text; 3], [l, p]: [u64; 2]) -> u64 {
-    let (a, b) = (characters::<U>(mem, a), characters::<U>(mem, b));
-    match part(count::<U>(&a), l, p) {
-        Some(out) => splice::<U>(mem, dst, a, out, Some(b)),
-        None => put::<U>(mem, dst, 0, a) as u64,
+    match Part::new::<U>(mem, a, l, p) {
+        Some(part) => splice::<U>(mem, dst, a, part, Some(b)),
+        None => put_first::<U>(mem, dst, 0, a, usize::MAX) as u64,
     }
 }
 
-/// `a` with other characters in place of those from `start` up to `end`.
-fn splice<U: Unit>(
-    mem: &mut [u8],
-    dst: Text,
-    a: Range<usize>,
-    (start, end): (usize, usize),
-    new: Option<Range<usize>>,
-) -> u64 {
-    let mut n = put::<U>(mem, dst, 0, first::<U>(&a, start));
+/// `a` with other characters in place of a part.
+fn splice<U: Unit>(mem: &mut [u8], dst: Text, a: Text, part: Part, new: Option<Text>) -> u64 {
+    let all = extent::<U>(mem, a);
+    let mut n = put::<U>(mem, dst, 0, first::<U>(&all, part.start));
     if let Some(new) = new {
-        n = put::<U>(mem, dst, n, new);
+        n = put_first::<U>(mem, dst, n, new, usize::MAX);
     }
-    put::<U>(mem, dst, n, from::<U>(&a, end)) as u64
+    if part.more {
+        n = put_first::<U>(mem, dst, n, behind_first::<U>(a, part.end), usize::MAX);
+    }
+    n as u64
 }
 
 /// The position of the first occurrence; 0 if there is none, and for an empty text.
 fn find<U: Unit>(mem: &mut [u8], [a, b]: [Text; 2], _: [u64; 0]) -> u64 {
-    let (a, b) = (&mem[characters::<U>(mem, a)], &mem[characters::<U>(mem, b)]);
-    if b.is_empty() {
-        return 0;
-    }
-    let at = a.windows(b.len()).step_by(U::BYTES).position(|window| window == b);
+    let at = U::find(&mem[extent::<U>(mem, a)], &mem[extent::<U>(mem, b)]);
     at.map_or(0, |at| (at + 1).min(INT_MAX) as u64)
 }
 
@@ -328,8 +367,10 @@ struct Writer<'m, U> {
 }
 
 impl<'m, U: Unit> Writer<'m, U> {
-    fn new(mem: &'m mut [u8], dst: Text) -> Self {
-        let mut writer = Self { mem, dst, length: 0, unit: std::marker::PhantomData };
+    /// Behind the first `length` characters, which it has.
+    fn new(mem: &'m mut [u8], dst: Text, length: usize) -> Self {
+        let length = length.min(dst.capacity as usize);
+        let mut writer = Self { mem, dst, length, unit: std::marker::PhantomData };
         writer.close();
         writer
     }
@@ -360,12 +401,13 @@ impl<U: Unit> fmt::Write for Writer<'_, U> {
     }
 }
 
-fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [raw, elem]: [u64; 2]) -> u64 {
-    let mut out = Writer::<U>::new(mem, dst);
+fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [n, raw, elem]: [u64; 3]) -> u64 {
     let Some(elem) = Elem::from_code(elem as u8) else { return 0 };
+    let n = number(n);
     if U::BYTES == 1 && elem.is_integer() {
-        return decimal(out.mem, dst, elem, raw) as u64;
+        return decimal(mem, dst, n, elem, raw) as u64;
     }
+    let mut out = Writer::<U>::new(mem, dst, n);
     if elem.family() == Family::Char {
         if raw != 0 {
             out.unit(narrowed::<U>(raw as u16));
@@ -378,7 +420,7 @@ fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [raw, elem]: [u64; 2]) -> u6
 }
 
 /// An integer as [`value::write_text`] writes it.
-fn decimal(mem: &mut [u8], dst: Text, elem: Elem, raw: u64) -> usize {
+fn decimal(mem: &mut [u8], dst: Text, n: usize, elem: Elem, raw: u64) -> usize {
     let negative = elem.is_signed() && elem.repr().sign_extend(raw) < 0;
     let mut rest = if elem.is_signed() { elem.repr().sign_extend(raw).unsigned_abs() } else { raw };
     let mut digits = [b'-'; 20];
@@ -394,14 +436,13 @@ fn decimal(mem: &mut [u8], dst: Text, elem: Elem, raw: u64) -> usize {
     at -= usize::from(negative);
     digits[at] = if negative { b'-' } else { digits[at] };
     let text = &digits[at..];
-    let start = (dst.at as usize).min(mem.len());
-    let room = (mem.len() - start).saturating_sub(1).min(dst.capacity as usize);
+    let Some((to, n, room)) = behind::<Narrow>(mem, dst, n) else { return 0 };
     let count = text.len().min(room);
-    if let Some(target) = mem.get_mut(start..start + count + 1) {
-        target[..count].copy_from_slice(&text[..count]);
-        target[count] = 0;
-    }
-    count
+    let Some(target) = mem.get_mut(to..to + count + 1) else { return n };
+    // Short and of a length that no library knows better.
+    target.iter_mut().zip(text).for_each(|(to, digit)| *to = *digit);
+    target[count] = 0;
+    n + count
 }
 
 /// A unit that a STRING cannot hold becomes a question mark.
@@ -435,7 +476,7 @@ fn read<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [elem]: [u64; 1]) -> u64 {
 fn recode<To: Unit, From: Unit>(mem: &mut [u8], [dst, src]: [Text; 2], _: [u64; 0]) -> u64 {
     let src = characters::<From>(mem, src);
     let length = count::<From>(&src);
-    let mut out = Writer::<To>::new(mem, dst);
+    let mut out = Writer::<To>::new(mem, dst, 0);
     for n in 0..length {
         let unit = From::get(&out.mem[src.clone()], n);
         out.unit(narrowed::<To>(unit));
@@ -492,7 +533,7 @@ bodies! {
         delete plcc_string_delete true (dst a; l p) delete::<Narrow>;
         replace plcc_string_replace true (dst a b; l p) replace::<Narrow>;
         find plcc_string_find false (a b;) find::<Narrow>;
-        write plcc_string_write true (dst; raw elem) write::<Narrow>;
+        write plcc_string_write true (dst; n raw elem) write::<Narrow>;
         read plcc_string_read false (a; elem) read::<Narrow>;
         recode plcc_string_recode true (dst src;) recode::<Narrow, Wide>;
     }
@@ -507,7 +548,7 @@ bodies! {
         delete plcc_wstring_delete true (dst a; l p) delete::<Wide>;
         replace plcc_wstring_replace true (dst a b; l p) replace::<Wide>;
         find plcc_wstring_find false (a b;) find::<Wide>;
-        write plcc_wstring_write true (dst; raw elem) write::<Wide>;
+        write plcc_wstring_write true (dst; n raw elem) write::<Wide>;
         read plcc_wstring_read false (a; elem) read::<Wide>;
         recode plcc_wstring_recode true (dst src;) recode::<Wide, Narrow>;
     }

@@ -5,7 +5,7 @@
 
 use super::func::FuncLower;
 use super::place::Access;
-use crate::ir::{Base, Place, TextPlace, ValueId};
+use crate::ir::{Base, IndexTerm, Place, TextPlace, ValueId};
 use plcc_diag::bug;
 use plcc_hir::body::{Expr, ExprKind};
 use plcc_hir::visit::{self, Visitor};
@@ -16,9 +16,13 @@ use plcc_stdlib::ops::Op;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::rt::strings::{TextFn, TextFns};
 use plcc_stdlib::value::longest_text;
+use std::rc::Rc;
 
 /// Strings of at most so many bytes are copied by their capacity, without looking for their end.
 const INLINE_BYTES: u32 = 128;
+
+/// Constants of at most so many bytes, the closing 0 with them, stand in the code.
+const SHORT_BYTES: u32 = 16;
 
 /// No operation gives a longer string.
 const LONGEST: u32 = 1 << 20;
@@ -36,6 +40,8 @@ pub(super) struct Text {
     left_over: bool,
     /// One of several that SEL and its kind chose at run time, maybe of the own frame.
     chosen: bool,
+    /// The bytes in front of the first 0 of a constant.
+    constant: Option<Rc<[u8]>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -143,7 +149,15 @@ impl FuncLower<'_, '_> {
             },
             _ => return None,
         };
-        Some(Text { place: access.place.clone(), wide, capacity, own: false, left_over: false, chosen: false })
+        Some(Text {
+            place: access.place.clone(),
+            wide,
+            capacity,
+            own: false,
+            left_over: false,
+            chosen: false,
+            constant: None,
+        })
     }
 
     /// The inverse of [`FuncLower::text_at`], for a type of strings.
@@ -173,29 +187,8 @@ impl FuncLower<'_, '_> {
                 Text { left_over: true, ..text }
             }
             ExprKind::Retype(inner) => self.text(inner),
-            ExprKind::String(s) => {
-                let place = self.string_constant(s.clone(), 1);
-                Text {
-                    place,
-                    wide: false,
-                    capacity: Capacity::Known(s.len() as u32),
-                    own: true,
-                    left_over: false,
-                    chosen: false,
-                }
-            }
-            ExprKind::WString(s) => {
-                let bytes = s.iter().flat_map(|unit| unit.to_le_bytes()).collect();
-                let place = self.string_constant(bytes, 2);
-                Text {
-                    place,
-                    wide: true,
-                    capacity: Capacity::Known(s.len() as u32),
-                    own: true,
-                    left_over: false,
-                    chosen: false,
-                }
-            }
+            ExprKind::String(s) => self.constant_text(s.clone(), false),
+            ExprKind::WString(s) => self.constant_text(s.iter().flat_map(|unit| unit.to_le_bytes()).collect(), true),
             ExprKind::Call(call) => {
                 let (wide, capacity) = self.string_type(expr.ty);
                 let temp = self.text_temp(wide, capacity);
@@ -207,6 +200,12 @@ impl FuncLower<'_, '_> {
                 let temp = self.text_temp(self.string_type(expr.ty).0, self.bound(expr));
                 let to = self.access(&temp, expr.ty);
                 self.std_call(call, expr.ty, Some(&to));
+                temp
+            }
+            ExprKind::Text { op: TextOp::Concat, wide, args } => {
+                let pieces = self.pieces(args);
+                let temp = self.text_temp(*wide, self.bound(expr));
+                self.concat(&pieces, &temp, None);
                 temp
             }
             ExprKind::Text { op, wide, args } => {
@@ -241,38 +240,106 @@ impl FuncLower<'_, '_> {
             let from = self.text(expr);
             return self.copy_text(to, &from);
         };
+        if *op == TextOp::Concat {
+            let pieces = self.pieces(args);
+            if texts(&pieces).all(|text| disjoint(to, text)) {
+                self.concat(&pieces, to, None);
+            } else if !self.append(&pieces, to) {
+                self.aside(expr, *wide, to, |s, temp| s.concat(&pieces, temp, None));
+            }
+            return;
+        }
         let operands = self.operands(args);
         if let Some(from) = self.chosen(*op, &operands) {
             return self.copy_text(to, &from);
         }
-        if operands.texts.iter().all(|text| disjoint(to, text)) {
-            return self.build(*op, &operands, to);
+        // What gives a part of a string may be built over that string itself.
+        let part = matches!(op, TextOp::Left | TextOp::Right | TextOp::Mid | TextOp::Delete);
+        if operands.texts.iter().all(|text| disjoint(to, text) || part && same(to, text)) {
+            self.build(*op, &operands, to);
+        } else {
+            self.aside(expr, *wide, to, |s, temp| s.build(*op, &operands, temp));
         }
-        if *op == TextOp::Concat && self.append(&operands, to) {
-            return;
-        }
+    }
+
+    /// Builds the string of an expression in a temporary and copies it.
+    fn aside(&mut self, expr: &Expr, wide: bool, to: &Text, build: impl FnOnce(&mut Self, &Text)) {
         // Every result is cut at its end, so what does not fit there need not be made.
-        let capacity = self.bound(expr).min(to.known().unwrap_or(LONGEST));
-        let temp = self.text_temp(*wide, capacity);
-        self.build(*op, &operands, &temp);
+        let temp = self.text_temp(wide, self.bound(expr).min(to.known().unwrap_or(LONGEST)));
+        build(self, &temp);
         self.copy_text(to, &temp);
     }
 
     /// `s := CONCAT(s, ...)`: the others go behind what is there. FALSE if that is not what it is.
-    fn append(&mut self, operands: &Operands, to: &Text) -> bool {
-        let Some((first, rest)) = operands.texts.split_first() else { return false };
-        let same = first.place == to.place && first.known() == to.known();
+    fn append(&mut self, pieces: &[Piece], to: &Text) -> bool {
+        let Some((Piece::Text(first), rest)) = pieces.split_first() else { return false };
         // LEN tells no greater length.
         let short = to.known().is_some_and(|capacity| capacity <= i16::MAX as u32);
-        if !same || !short || !rest.iter().all(|text| disjoint(to, text)) {
+        if !same(first, to) || !short || !texts(rest).all(|text| disjoint(to, text)) {
             return false;
         }
-        let fns = TextFns::of(to.wide);
-        let mut end = self.call_text(&fns.len, &[to], &[]);
-        for text in rest {
-            end = self.call_text(&fns.put, &[to, text], &[end]);
-        }
+        let end = self.call_text(&TextFns::of(to.wide).len, &[to], &[]);
+        self.concat(rest, to, Some(end));
         true
+    }
+
+    /// Puts pieces one behind the other, behind the first `end` characters of a string (which has them).
+    fn concat(&mut self, pieces: &[Piece], to: &Text, end: Option<ValueId>) {
+        let fns = TextFns::of(to.wide);
+        let mut end = end;
+        for piece in pieces {
+            end = Some(match piece {
+                Piece::Text(text) => self.put(to, text, end),
+                Piece::Number(value, elem) => {
+                    let raw = self.register_of(*value);
+                    let code = self.b.number(Repr::I64, u64::from(elem.code()));
+                    let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
+                    self.call_text(&fns.write, &[to], &[start, raw, code])
+                }
+            });
+        }
+    }
+
+    /// Puts a string behind the first characters of another, none if `end` is; gives the new length.
+    fn put(&mut self, to: &Text, text: &Text, end: Option<ValueId>) -> ValueId {
+        let unit = to.unit_bytes();
+        let short = text.constant.clone().filter(|bytes| bytes.len() as u32 + unit <= SHORT_BYTES);
+        let fits = |bytes: &[u8]| to.known()?.checked_sub(bytes.len() as u32 / unit);
+        let Some((bytes, last)) = short.and_then(|bytes| Some((bytes.clone(), fits(&bytes)?))) else {
+            let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
+            return self.call_text(&TextFns::of(to.wide).put, &[to, text], &[start]);
+        };
+        let length = u64::from(bytes.len() as u32 / unit);
+        let closed = [&bytes, &[0, 0][..unit as usize]].concat();
+        let Some(end) = end else {
+            self.store_bytes(&to.place, &closed);
+            return self.b.number(Repr::I64, length);
+        };
+        // Few are cut: the characters are in the code.
+        let limit = self.b.number(Repr::I64, u64::from(last));
+        let whole = self.b.op(PrimOp::LeS, Repr::I64, &[end, limit]);
+        let (fit, cut, done) = (self.b.block(), self.b.block(), self.b.block());
+        let result = self.b.block_param(done, Repr::I64);
+        self.b.branch(whole, fit, cut);
+        self.b.switch_to(fit);
+        let mut place = to.place.clone();
+        place.index.push(IndexTerm { value: end, stride: unit, low: 0, high: i64::from(last) });
+        self.store_bytes(&place, &closed);
+        let length = self.b.number(Repr::I64, length);
+        let sum = self.b.op(PrimOp::Add, Repr::I64, &[end, length]);
+        self.b.jump(done, &[sum]);
+        self.b.switch_to(cut);
+        let sum = self.call_text(&TextFns::of(to.wide).put, &[to, text], &[end]);
+        self.b.jump(done, &[sum]);
+        self.b.switch_to(done);
+        result
+    }
+
+    fn store_bytes(&mut self, place: &Place, bytes: &[u8]) {
+        for (at, repr, raw) in words(bytes) {
+            let value = self.b.number(repr, raw);
+            self.b.store(place.clone().plus(at), value);
+        }
     }
 
     /// Copies a string to where nothing is defined yet; the two do not overlap. What is left over there from something else
@@ -294,7 +361,7 @@ impl FuncLower<'_, '_> {
 
     /// Copies a string and cuts it at the capacity. The two may be the same or overlap.
     pub fn copy_text(&mut self, to: &Text, from: &Text) {
-        if to.place == from.place && to.known().is_some_and(|n| from.known() == Some(n)) {
+        if same(to, from) {
             return;
         }
         if let Some(bytes) = self.block_bytes(to, from) {
@@ -342,14 +409,10 @@ impl FuncLower<'_, '_> {
     }
 
     fn compare(&mut self, op: Op, a: &Text, b: &Text) -> ValueId {
-        // With '' the first character decides.
-        let empty = |text: &Text| text.known() == Some(0);
-        if let (Op::Eq | Op::Ne, true) = (op, empty(a) || empty(b)) {
-            let other = if empty(b) { a } else { b };
-            let repr = unit_repr(other.wide);
-            let first = self.b.load(repr, other.place.clone(), false);
-            let zero = self.b.number(repr, 0);
-            return self.b.op(if op == Op::Eq { PrimOp::Eq } else { PrimOp::Ne }, repr, &[first, zero]);
+        if let Op::Eq | Op::Ne = op
+            && let Some(equal) = self.equals_constant(a, b).or_else(|| self.equals_constant(b, a))
+        {
+            return if op == Op::Eq { equal } else { self.b.not(equal) };
         }
         let order = self.call_text(&TextFns::of(a.wide).compare, &[a, b], &[]);
         let zero = self.b.number(Repr::I64, 0);
@@ -364,6 +427,51 @@ impl FuncLower<'_, '_> {
         self.b.op(prim, Repr::I64, &sides)
     }
 
+    /// Whether a string is a short constant: its bytes are compared at once.
+    fn equals_constant(&mut self, text: &Text, constant: &Text) -> Option<ValueId> {
+        let (bytes, unit) = (constant.constant.clone()?, text.unit_bytes());
+        let room = text.known()? * unit;
+        if bytes.len() as u32 > room {
+            return Some(self.b.number(Repr::I8, 0));
+        }
+        // A string that is full ends there.
+        let end: &[u8] = if bytes.len() as u32 == room { &[] } else { &[0, 0][..unit as usize] };
+        let bytes = [&bytes, end].concat();
+        if bytes.len() as u32 > SHORT_BYTES {
+            return None;
+        }
+        let mut all = None;
+        for (at, repr, raw) in words(&bytes) {
+            let there = self.b.load(repr, text.place.clone().plus(at), false);
+            let wanted = self.b.number(repr, raw);
+            let same = self.b.op(PrimOp::Eq, repr, &[there, wanted]);
+            all = Some(match all {
+                Some(before) => self.b.op(PrimOp::And, Repr::I8, &[before, same]),
+                None => same,
+            });
+        }
+        Some(all.unwrap_or_else(|| self.b.number(Repr::I8, 1)))
+    }
+
+    /// What CONCAT joins, evaluated; a value that becomes text is written where it is to go.
+    fn pieces(&mut self, args: &[Expr]) -> Vec<Piece> {
+        let mut pieces = Vec::with_capacity(args.len());
+        for (n, arg) in args.iter().enumerate() {
+            pieces.push(match &arg.kind {
+                ExprKind::Text { op: TextOp::Write(elem), args: value, .. } => {
+                    Piece::Number(self.value(&value[0]), *elem)
+                }
+                _ => Piece::Text(self.operand(arg, &args[n + 1..])),
+            });
+        }
+        pieces
+    }
+
+    /// A string that is an argument, copied if a later argument's call could change it.
+    fn operand(&mut self, arg: &Expr, later: &[Expr]) -> Text {
+        if later.iter().any(Expr::calls) { self.lasting_text(arg) } else { self.text(arg) }
+    }
+
     /// All arguments, from left to right; a string that a later argument's call could change is copied.
     fn operands(&mut self, args: &[Expr]) -> Operands {
         let mut operands = Operands::default();
@@ -372,8 +480,8 @@ impl FuncLower<'_, '_> {
                 operands.values.push(self.value(arg));
                 continue;
             }
-            let later = args[n + 1..].iter().any(Expr::calls);
-            operands.texts.push(if later { self.lasting_text(arg) } else { self.text(arg) });
+            let text = self.operand(arg, &args[n + 1..]);
+            operands.texts.push(text);
         }
         operands
     }
@@ -423,6 +531,7 @@ impl FuncLower<'_, '_> {
             own: yes.own && no.own,
             left_over: yes.left_over || no.left_over,
             chosen: true,
+            constant: None,
         }
     }
 
@@ -430,17 +539,11 @@ impl FuncLower<'_, '_> {
     fn build(&mut self, op: TextOp, operands: &Operands, to: &Text) {
         let fns = TextFns::of(to.wide);
         let f = match op {
-            TextOp::Concat => {
-                let mut end = self.b.number(Repr::I64, 0);
-                for text in &operands.texts {
-                    end = self.call_text(&fns.put, &[to, text], &[end]);
-                }
-                return;
-            }
             TextOp::Write(elem) => {
                 let raw = self.register_of(operands.values[0]);
                 let code = self.b.number(Repr::I64, u64::from(elem.code()));
-                self.call_text(&fns.write, &[to], &[raw, code]);
+                let start = self.b.number(Repr::I64, 0);
+                self.call_text(&fns.write, &[to], &[start, raw, code]);
                 return;
             }
             TextOp::Left => &fns.left,
@@ -477,7 +580,25 @@ impl FuncLower<'_, '_> {
             self.text_temps.rooms.push((place.clone(), bytes, true));
             place
         });
-        Text { place, wide, capacity: Capacity::Known(capacity), own: true, left_over: true, chosen: false }
+        Text {
+            place,
+            wide,
+            capacity: Capacity::Known(capacity),
+            own: true,
+            left_over: true,
+            chosen: false,
+            constant: None,
+        }
+    }
+
+    /// A constant in memory.
+    fn constant_text(&mut self, bytes: Vec<u8>, wide: bool) -> Text {
+        let unit = if wide { 2 } else { 1 };
+        let end = bytes.chunks(unit).position(|unit| unit.iter().all(|byte| *byte == 0));
+        let shown: Rc<[u8]> = bytes[..end.map_or(bytes.len(), |n| n * unit)].into();
+        let capacity = Capacity::Known((bytes.len() / unit) as u32);
+        let place = self.string_constant(bytes, unit);
+        Text { place, wide, capacity, own: true, left_over: false, chosen: false, constant: Some(shown) }
     }
 
     fn string_type(&self, ty: TypeId) -> (bool, u32) {
@@ -558,6 +679,40 @@ impl FuncLower<'_, '_> {
             repr => self.b.resize(raw, false, repr),
         }
     }
+}
+
+/// What CONCAT joins.
+#[derive(Debug)]
+enum Piece {
+    Text(Text),
+    /// The text of a value.
+    Number(ValueId, Elem),
+}
+
+fn texts(pieces: &[Piece]) -> impl Iterator<Item = &Text> {
+    pieces.iter().filter_map(|piece| match piece {
+        Piece::Text(text) => Some(text),
+        Piece::Number(..) => None,
+    })
+}
+
+/// Bytes cut into words, great ones first: offset, representation and register value.
+fn words(bytes: &[u8]) -> Vec<(u32, Repr, u64)> {
+    let mut words = Vec::new();
+    let mut at = 0;
+    for repr in [Repr::I64, Repr::I32, Repr::I16, Repr::I8] {
+        while let Some(word) = bytes[at..].get(..repr.bytes() as usize) {
+            let raw = word.iter().rev().fold(0, |raw, byte| raw << 8 | u64::from(*byte));
+            words.push((at as u32, repr, raw));
+            at += word.len();
+        }
+    }
+    words
+}
+
+/// Whether two are the same string.
+fn same(a: &Text, b: &Text) -> bool {
+    a.place == b.place && a.known().is_some() && a.known() == b.known()
 }
 
 /// The evaluated arguments of an operation.

@@ -57,6 +57,8 @@ pub fn run(func: &mut Func) {
             let here = seen.parts(dst, *bytes);
             seen.hand_on(dst, &there);
             seen.hand_on(src, &here);
+            seen.hand_on_texts(src, dst, *bytes);
+            seen.hand_on_texts(dst, src, *bytes);
         }
     }
     for id in func.blocks.indices() {
@@ -144,7 +146,10 @@ impl Seen {
     }
 
     fn text(&mut self, place: &Place) {
-        self.texts.entry((place.base, place.index.clone())).or_default().push(place.offset);
+        let list = self.texts.entry((place.base, place.index.clone())).or_default();
+        if !list.contains(&place.offset) {
+            list.push(place.offset);
+        }
     }
 
     /// The parts of some bytes, counted from the place.
@@ -159,6 +164,20 @@ impl Seen {
     fn hand_on(&mut self, place: &Place, parts: &[(i64, Repr)]) {
         for (at, repr) in parts {
             self.add((place.base, place.index.clone()), place.offset + at, *repr);
+        }
+    }
+
+    /// Strings that are copied are strings.
+    fn hand_on_texts(&mut self, from: &Place, to: &Place, bytes: u32) {
+        let range = from.offset..from.offset + i64::from(bytes);
+        let Some(there) = self.texts.get(&(from.base, from.index.clone())) else { return };
+        let new: Vec<i64> =
+            there.iter().filter(|at| range.contains(at)).map(|at| at - from.offset + to.offset).collect();
+        let here = self.texts.entry((to.base, to.index.clone())).or_default();
+        for at in new {
+            if !here.contains(&at) {
+                here.push(at);
+            }
         }
     }
 

@@ -224,8 +224,9 @@ pub fn for_each_access(func: &Func, constants: &Constants, inst: &Inst, f: &mut 
         Inst::Zero { dst, bytes } => f(dst, i64::from(*bytes), true),
         Inst::CallText { func: body, texts, .. } => {
             for (n, text) in texts.iter().enumerate() {
-                // Characters may be two bytes; what the capacity is, may be known only at run time.
-                let bytes = constants.get(text.capacity).map_or(1 << 32, |capacity| 2 * (capacity as i64 + 1));
+                // What the capacity is, may be known only at run time.
+                let unit = i64::from(body.unit_bytes(n));
+                let bytes = constants.get(text.capacity).map_or(1 << 32, |capacity| unit * (capacity as i64 + 1));
                 f(&text.place, bytes, false);
                 if n == 0 && body.builds {
                     f(&text.place, bytes, true);

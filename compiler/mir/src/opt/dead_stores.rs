@@ -60,8 +60,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
                 Inst::Zero { dst, bytes } | Inst::Copy { dst, bytes, .. } => {
                     let bytes = i64::from(*bytes);
                     // An exit would have to owe all of it.
-                    let found = written.iter().any(|w| w.exits.is_empty() && covers(w, dst, bytes));
-                    if found {
+                    if cover(&written, dst, bytes) {
                         dead[n] = true;
                         continue;
                     }
@@ -147,6 +146,25 @@ fn covers(written: &Written, place: &Place, bytes: i64) -> bool {
     } else {
         exact && place.bit.is_none()
     }
+}
+
+/// Whether later writes together cover a block.
+fn cover(written: &[Written], place: &Place, bytes: i64) -> bool {
+    let whole = |w: &&Written| {
+        let same = w.place.base == place.base && w.place.index == place.index && w.place.bit.is_none();
+        same && (w.exits.is_empty() || w.place.base == Base::Frame)
+    };
+    let mut at = place.offset;
+    while at < place.offset + bytes {
+        // The one that reaches furthest of those that go on from here.
+        let next =
+            written.iter().filter(whole).filter(|w| w.place.offset <= at).map(|w| w.place.offset + w.bytes).max();
+        match next.filter(|end| *end > at) {
+            Some(end) => at = end,
+            None => return false,
+        }
+    }
+    true
 }
 
 /// What is written on every way behind a block.

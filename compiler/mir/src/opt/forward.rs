@@ -1,7 +1,8 @@
 //! A load of what was stored or loaded before is that value.
 //!
 //! Along every way the places are remembered whose value is known, the latest ones only: a value that is kept long costs a
-//! register, and its memory is never far. Where ways meet, what all of them know stays. Loops begin with nothing.
+//! register, and its memory is never far. Where ways meet, what all of them know stays; if they know different values of a
+//! place and it is read right behind, the block gets a parameter. Loops begin with nothing.
 //!
 //! Inside a block the lengths of strings are known too that were just built or measured: LEN of them is that value.
 //!
@@ -15,6 +16,7 @@ use super::alias::Alias;
 use super::rewrite::{Constants, Replace, writes_memory};
 use crate::dominators::Dominators;
 use crate::ir::{BlockId, Func, Inst, Place, ValueId};
+use crate::visit;
 use index_vec::IndexVec;
 use plcc_stdlib::prim::Repr;
 use plcc_stdlib::rt::strings::{TextFn, TextFns};
@@ -37,6 +39,22 @@ struct Known {
     used: u32,
 }
 
+impl Known {
+    /// Whether a load gives this value.
+    fn gives(&self, place: &Place, repr: Repr, normalise: bool) -> bool {
+        // A byte that was read as a truth value may be another one in memory.
+        let truth = if normalise { self.truth } else { !self.truth || place.bit.is_some() };
+        self.place == *place && self.repr == repr && truth
+    }
+}
+
+/// A place whose value every predecessor knows, each another one.
+struct Meeting {
+    known: Known,
+    /// By predecessor.
+    values: Vec<ValueId>,
+}
+
 /// A string whose length is known.
 #[derive(Debug, Clone, PartialEq)]
 struct Length {
@@ -56,7 +74,9 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let mut lengths: Vec<Length> = Vec::new();
     let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
-        let mut known = start(&tree.preds[block], &ends);
+        let preds = &tree.preds[block];
+        let mut known = start(preds, &ends);
+        let mut meetings = meetings(preds, &ends);
         lengths.clear();
         let insts = std::mem::take(&mut func.blocks[block].insts);
         let mut out = Vec::with_capacity(insts.len());
@@ -65,17 +85,22 @@ pub fn run(func: &mut Func, alias: &Alias) {
             replace.inst(&mut inst);
             if let Inst::Load { dst, place, normalise } = &inst {
                 let repr = func.values[*dst];
-                let found = known.iter().position(|k| {
-                    k.place == *place
-                        && k.repr == repr
-                        // A byte that was read as a truth value may be another one in memory.
-                        && (if *normalise { k.truth } else { !k.truth || place.bit.is_some() })
-                        && (clock - k.used < LIFETIME || constants.get(k.value).is_some())
-                });
+                let fresh = |k: &Known| clock - k.used < LIFETIME;
+                let found = known
+                    .iter()
+                    .position(|k| k.gives(place, repr, *normalise) && (fresh(k) || constants.get(k.value).is_some()));
                 if let Some(n) = found {
                     let one = Known { used: clock, ..known.remove(n) };
                     replace.set(*dst, one.value);
                     known.push(one);
+                    continue;
+                }
+                let met = meetings.iter().position(|m| m.known.gives(place, repr, *normalise) && fresh(&m.known));
+                if let Some(n) = met {
+                    let one = meetings.swap_remove(n);
+                    let value = join(func, block, preds, &one.values, repr);
+                    replace.set(*dst, value);
+                    known.push(Known { value, used: clock, ..one.known });
                     continue;
                 }
             }
@@ -85,7 +110,8 @@ pub fn run(func: &mut Func, alias: &Alias) {
                 replace.set(dst, length);
                 continue;
             }
-            forget(func, alias, &constants, &inst, &mut known);
+            forget(func, alias, &constants, &inst, &mut known, |k| k);
+            forget(func, alias, &constants, &inst, &mut meetings, |m| &m.known);
             if writes_memory(&inst) {
                 lengths.retain(|l| !alias.may_write(func, &constants, &inst, &l.place, l.bytes));
             }
@@ -140,14 +166,56 @@ fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec
     known
 }
 
+/// What all ways into a block know, but differently.
+fn meetings(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec<Meeting> {
+    let Some((first, rest)) = preds.split_first().filter(|(_, rest)| !rest.is_empty()) else { return Vec::new() };
+    let Some(known) = &ends[*first] else { return Vec::new() };
+    let meeting = |k: &Known| {
+        let mut values = vec![k.value];
+        for pred in rest {
+            let same = |o: &&Known| o.place == k.place && o.repr == k.repr && o.truth == k.truth;
+            values.push(ends[*pred].as_ref()?.iter().rev().find(same)?.value);
+        }
+        values.iter().any(|v| *v != k.value).then(|| Meeting { known: k.clone(), values })
+    };
+    known.iter().filter_map(meeting).collect()
+}
+
+/// A new parameter of a block, with its value from each predecessor.
+fn join(func: &mut Func, block: BlockId, preds: &[BlockId], values: &[ValueId], repr: Repr) -> ValueId {
+    let param = func.values.push(repr);
+    func.blocks[block].params.push(param);
+    for (n, pred) in preds.iter().enumerate() {
+        if preds[..n].contains(pred) {
+            continue;
+        }
+        visit::targets(&mut func.blocks[*pred].term, &mut |target| {
+            if target.block == block {
+                target.args.push(values[n]);
+            }
+        });
+    }
+    param
+}
+
 /// Forgets what an instruction may change.
-fn forget(func: &Func, alias: &Alias, constants: &Constants, inst: &Inst, known: &mut Vec<Known>) {
+fn forget<T>(
+    func: &Func,
+    alias: &Alias,
+    constants: &Constants,
+    inst: &Inst,
+    list: &mut Vec<T>,
+    known: impl Fn(&T) -> &Known,
+) {
     // The most frequent case without a detour.
     if let Inst::Store { place, value } = inst {
         let bytes = i64::from(func.values[*value].bytes());
-        known.retain(|k| !alias.overlap(&k.place, i64::from(k.repr.bytes()), place, bytes));
+        list.retain(|k| !alias.overlap(&known(k).place, i64::from(known(k).repr.bytes()), place, bytes));
     } else if writes_memory(inst) {
-        known.retain(|k| !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes())));
+        list.retain(|k| {
+            let k = known(k);
+            !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes()))
+        });
     }
 }
 

@@ -10,7 +10,7 @@
 //! ```
 
 use super::alias::{Alias, for_each_access, span};
-use super::rewrite::Constants;
+use super::rewrite::{Constants, Replace};
 use super::ssa::{Scope, Var, rewrite};
 use crate::dominators::Dominators;
 use crate::ir::{Base, BlockId, Func, Inst, Place};
@@ -42,7 +42,9 @@ pub fn run(func: &mut Func, alias: &Alias) {
             loads.push(Inst::Load { dst, place: var.place.clone(), normalise: false });
             initial.push(dst);
         }
-        rewrite(func, &scope, batch, &initial);
+        let mut replace = Replace::new(func);
+        rewrite(func, &scope, batch, &initial, &mut replace);
+        replace.apply(func);
         func.blocks[entry].insts.splice(0..0, loads);
     }
     unread_stores(func, alias);

@@ -28,8 +28,8 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let loops = loops::find(func);
     let tree = Dominators::new(func);
     let proven = Proven::new(func);
+    let constants = Constants::new(func);
     for l in &loops {
-        let constants = Constants::new(func);
         let size: usize = l.blocks.iter().map(|b| func.blocks[*b].insts.len()).sum();
         if size > LARGE {
             continue;

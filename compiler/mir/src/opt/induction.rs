@@ -17,9 +17,9 @@
 //! ```
 
 use super::loops::{self, Loop};
-use super::rewrite::Constants;
+use super::rewrite::{Constants, Replace};
 use crate::dominators::Dominators;
-use crate::ir::{Args, BlockId, Func, Inst, Term, ValueId};
+use crate::ir::{Args, Block, BlockId, Func, Inst, Term, ValueId};
 use crate::visit;
 use index_vec::IndexVec;
 use plcc_stdlib::prim::{PrimOp, Repr};
@@ -34,26 +34,79 @@ const GUARD: usize = 8;
 /// The pass.
 pub fn run(func: &mut Func) {
     let loops = loops::find(func);
-    let tree = Dominators::new(func);
-    for l in &loops {
-        widen(func, &tree, l);
+    if loops.is_empty() {
+        return;
     }
-    for l in &loops {
-        products(func, &tree, l);
+    let tree = Dominators::new(func);
+    for phase in [widen, products] {
+        let mut values = Values::new(func);
+        for l in &loops {
+            values.enter(func, l);
+            phase(func, &tree, l, &mut values);
+        }
+        values.replace.apply(func);
     }
 }
 
-/// What each value is made of, where that is an operation.
-type Prims = IndexVec<ValueId, Option<(PrimOp, Repr, Args)>>;
+/// What is known of values. Of a loop it is brought up to date when the loop's turn comes, so that no loop costs a look at
+/// the whole function.
+struct Values {
+    /// What each is made of, where that is an operation.
+    prims: IndexVec<ValueId, Option<(PrimOp, Repr, Args)>>,
+    constants: Constants,
+    /// Blocks that read a value, as it was at first.
+    readers: IndexVec<ValueId, Vec<BlockId>>,
+    /// Done in loops that had their turn, not yet elsewhere.
+    replace: Replace,
+}
 
-fn prims(func: &Func) -> Prims {
-    let mut prims: Prims = IndexVec::from_vec(vec![None; func.values.len()]);
-    for inst in func.blocks.iter().flat_map(|b| &b.insts) {
-        if let Inst::Prim { dst, op, repr, args } = inst {
-            prims[*dst] = Some((*op, *repr, *args));
+impl Values {
+    fn new(func: &Func) -> Self {
+        let mut values = Self {
+            prims: IndexVec::from_vec(vec![None; func.values.len()]),
+            constants: Constants::new(func),
+            readers: IndexVec::from_vec(vec![Vec::new(); func.values.len()]),
+            replace: Replace::new(func),
+        };
+        for (id, block) in func.blocks.iter_enumerated() {
+            values.note(block);
+            let mut reads = |v: ValueId| {
+                if values.readers[v].last() != Some(&id) {
+                    values.readers[v].push(id);
+                }
+            };
+            block.insts.iter().for_each(|inst| inst.for_each_use(&mut reads));
+            block.term.for_each_use(&mut reads);
+        }
+        values
+    }
+
+    fn note(&mut self, block: &Block) {
+        for inst in &block.insts {
+            match inst {
+                Inst::Prim { dst, op, repr, args } => {
+                    while self.prims.len() <= dst.index() {
+                        self.prims.push(None);
+                    }
+                    self.prims[*dst] = Some((*op, *repr, *args));
+                }
+                Inst::Const { dst, raw } => self.constants.note(*dst, *raw),
+                _ => {}
+            }
         }
     }
-    prims
+
+    fn enter(&mut self, func: &mut Func, l: &Loop) {
+        self.replace.blocks(func, &l.blocks);
+        self.replace.blocks(func, &[l.preheader]);
+        l.blocks.iter().chain([&l.preheader]).for_each(|block| self.note(&func.blocks[*block]));
+    }
+
+    fn prim(&self, value: ValueId) -> Option<(PrimOp, Repr, Args)> {
+        let (op, repr, mut args) = self.prims.get(value).copied().flatten()?;
+        args.iter_mut().for_each(|v| *v = self.replace.get(*v));
+        Some((op, repr, args))
+    }
 }
 
 /// The only block of a loop that jumps back.
@@ -85,15 +138,15 @@ struct Counter {
     step: i64,
 }
 
-fn counters(func: &Func, l: &Loop, latch: BlockId, prims: &Prims, constants: &Constants) -> Vec<Counter> {
+fn counters(func: &Func, l: &Loop, latch: BlockId, values: &Values) -> Vec<Counter> {
     let (Some(first), Some(next)) = (args_to(func, l.preheader, l.header), args_to(func, latch, l.header)) else {
         return Vec::new();
     };
     let mut list = Vec::new();
     for (param, value) in func.blocks[l.header].params.iter().enumerate() {
         let repr = func.values[*value];
-        let Some((PrimOp::Add, _, Args::Two([x, c]))) = prims[next[param]] else { continue };
-        if let (true, Some(raw)) = (x == *value, constants.get(c)) {
+        let Some((PrimOp::Add, _, Args::Two([x, c]))) = values.prim(next[param]) else { continue };
+        if let (true, Some(raw)) = (x == *value, values.constants.get(c)) {
             list.push(Counter { param, value: *value, first: first[param], repr, step: repr.sign_extend(raw) });
         }
     }
@@ -108,39 +161,48 @@ enum Last {
     Value(ValueId),
 }
 
-fn widen(func: &mut Func, tree: &Dominators, l: &Loop) {
+fn widen(func: &mut Func, tree: &Dominators, l: &Loop, values: &mut Values) {
     let Some(latch) = latch(tree, l) else { return };
-    let (prims, constants) = (prims(func), Constants::new(func));
-    let counters = counters(func, l, latch, &prims, &constants);
+    let counters = counters(func, l, latch, values);
     // The number of passes left, and the test that ends the loop.
     let Some((rest, test)) = counters.iter().find_map(|c| {
-        let test = (c.step == -1).then(|| end_test(func, tree, l, latch, c.value, &prims, &constants)).flatten();
+        let test = (c.step == -1).then(|| end_test(func, tree, l, latch, c.value, values)).flatten();
         test.map(|test| (*c, test))
     }) else {
         return;
     };
     for counter in counters.iter().filter(|c| c.param != rest.param && c.repr == rest.repr) {
-        let Some((last, signed, unsigned)) = last_value(func, tree, l, counter, &rest, &prims, &constants) else {
+        let Some((last, signed, unsigned)) = last_value(func, tree, l, counter, &rest, values) else {
             continue;
         };
         let wide = match counter.repr {
             Repr::I64 => None,
-            _ => wide_counter(func, l, latch, counter, signed, unsigned),
+            _ => wide_counter(func, l, latch, counter, (signed, unsigned), values),
         };
         if let (Last::Constant(last), [exit]) = (&last, &l.exits[..])
             && leads_to(func, test.0, *exit)
         {
-            let value = wide.map_or(counter.value, |(_, narrow)| narrow);
-            known_behind(func, l, *exit, value, counter.repr, *last as u64 & counter.repr.mask());
-            if let Some((wide, _)) = wide {
-                known_behind(func, l, *exit, wide, Repr::I64, *last as u64);
+            // Everywhere where the counter was read, or its extension.
+            let mut readers = values.readers.get(counter.value).cloned().unwrap_or_default();
+            for value in wide.iter().flat_map(|(_, _, extended)| extended) {
+                readers.extend(values.readers.get(*value).into_iter().flatten());
+            }
+            let inside: FxHashSet<BlockId> = l.blocks.iter().copied().collect();
+            readers.retain(|block| !inside.contains(block));
+            readers.sort_unstable();
+            readers.dedup();
+            values.replace.blocks(func, &readers);
+            let value = wide.as_ref().map_or(counter.value, |(_, narrow, _)| *narrow);
+            known_behind(func, &readers, *exit, value, counter.repr, *last as u64 & counter.repr.mask());
+            if let Some((wide, ..)) = wide {
+                known_behind(func, &readers, *exit, wide, Repr::I64, *last as u64);
             }
         }
         return match (last, wide) {
-            (Last::Constant(last), Some((wide, _))) => replace_test(func, test, Repr::I64, wide, last as u64),
+            (Last::Constant(last), Some((wide, ..))) => replace_test(func, test, Repr::I64, wide, last as u64),
             (Last::Constant(last), None) => replace_test(func, test, counter.repr, counter.value, last as u64),
             (Last::Value(last), wide) => {
-                let value = wide.map_or(counter.value, |(_, narrow)| narrow);
+                let value = wide.map_or(counter.value, |(_, narrow, _)| narrow);
                 set_test(func, test, counter.repr, value, last);
             }
         };
@@ -154,7 +216,7 @@ fn leads_to(func: &Func, from: BlockId, to: BlockId) -> bool {
 }
 
 /// Behind the only exit of a loop, taken in the last pass, the counter has its last value.
-fn known_behind(func: &mut Func, l: &Loop, exit: BlockId, value: ValueId, repr: Repr, raw: u64) {
+fn known_behind(func: &mut Func, readers: &[BlockId], exit: BlockId, value: ValueId, repr: Repr, raw: u64) {
     let dst = func.values.push(repr);
     let mut used = false;
     let mut rename = |v: &mut ValueId| {
@@ -163,8 +225,8 @@ fn known_behind(func: &mut Func, l: &Loop, exit: BlockId, value: ValueId, repr: 
             used = true;
         }
     };
-    for id in func.blocks.indices().filter(|id| !l.blocks.contains(id)) {
-        let block = &mut func.blocks[id];
+    for id in readers {
+        let block = &mut func.blocks[*id];
         block.insts.iter_mut().for_each(|inst| visit::uses(inst, &mut rename));
         visit::term_uses(&mut block.term, &mut rename);
     }
@@ -180,13 +242,12 @@ fn end_test(
     l: &Loop,
     latch: BlockId,
     rest: ValueId,
-    prims: &Prims,
-    constants: &Constants,
+    values: &Values,
 ) -> Option<(BlockId, usize)> {
     for &block in &l.blocks {
         let Term::Branch { cond, then, .. } = &func.blocks[block].term else { continue };
-        let Some((PrimOp::Eq, _, Args::Two([x, zero]))) = prims[*cond] else { continue };
-        if x != rest || constants.get(zero) != Some(0) || l.blocks.contains(&then.block) {
+        let Some((PrimOp::Eq, _, Args::Two([x, zero]))) = values.prim(*cond) else { continue };
+        if x != rest || values.constants.get(zero) != Some(0) || l.blocks.contains(&then.block) {
             continue;
         }
         let at = func.blocks[block].insts.iter().position(|inst| inst.results().0 == Some(*cond));
@@ -202,11 +263,10 @@ fn last_value(
     l: &Loop,
     counter: &Counter,
     rest: &Counter,
-    prims: &Prims,
-    constants: &Constants,
+    values: &Values,
 ) -> Option<(Last, bool, bool)> {
     let repr = counter.repr;
-    if let (Some(first), Some(passes)) = (constants.get(counter.first), constants.get(rest.first)) {
+    if let (Some(first), Some(passes)) = (values.constants.get(counter.first), values.constants.get(rest.first)) {
         let most = i128::from(passes);
         let limit = |first: i128| first + most * i128::from(counter.step);
         let (min, max) = (-(1i128 << (repr.bits() - 1)), (1i128 << (repr.bits() - 1)) - 1);
@@ -221,7 +281,7 @@ fn last_value(
             unsigned && (!signed || from >= 0),
         ));
     }
-    let Some((PrimOp::Sub, _, Args::Two([a, b]))) = prims[rest.first] else { return None };
+    let Some((PrimOp::Sub, _, Args::Two([a, b]))) = values.prim(rest.first) else { return None };
     let (low, high, last) = match counter.step {
         1 if b == counter.first => (b, a, a),
         -1 if a == counter.first => (b, a, b),
@@ -235,7 +295,7 @@ fn last_value(
             && tree.dominates(then.block, l.preheader)
             && then.block != otherwise.block
             && tree.preds[then.block].len() == 1
-            && let Some((op @ (PrimOp::LeS | PrimOp::LeU), _, Args::Two([x, y]))) = prims[*cond]
+            && let Some((op @ (PrimOp::LeS | PrimOp::LeU), _, Args::Two([x, y]))) = values.prim(*cond)
             && (x, y) == (low, high)
         {
             return Some((Last::Value(last), op == PrimOp::LeS, op == PrimOp::LeU));
@@ -245,15 +305,15 @@ fn last_value(
     None
 }
 
-/// Counts in 64 bits if something in the loop extends the counter; gives that counter and its low part.
+/// Counts in 64 bits if something in the loop extends the counter; gives that counter, its low part, and what it stands for.
 fn wide_counter(
     func: &mut Func,
     l: &Loop,
     latch: BlockId,
     counter: &Counter,
-    signed: bool,
-    unsigned: bool,
-) -> Option<(ValueId, ValueId)> {
+    (signed, unsigned): (bool, bool),
+    values: &mut Values,
+) -> Option<(ValueId, ValueId, Vec<ValueId>)> {
     let extension = |op: PrimOp| match op {
         PrimOp::Sext(Repr::I64) => signed,
         PrimOp::Zext(Repr::I64) => unsigned,
@@ -286,16 +346,15 @@ fn wide_counter(
     // The counter itself is the low part: no operation.
     let narrow = func.values.push(counter.repr);
     let inst = Inst::Prim { dst: narrow, op: PrimOp::Wrap(counter.repr), repr: Repr::I64, args: Args::One([wide]) };
-    let mut replace = super::rewrite::Replace::new(func);
-    extended.iter().for_each(|value| replace.set(*value, wide));
-    replace.set(counter.value, narrow);
+    extended.iter().for_each(|value| values.replace.set(*value, wide));
+    values.replace.set(counter.value, narrow);
     for &block in &l.blocks {
         func.blocks[block].insts.retain(|inst| inst.results().0.is_none_or(|v| !extended.contains(&v)));
     }
-    replace.apply(func);
+    values.replace.blocks(func, &l.blocks);
     func.blocks[l.header].insts.insert(0, inst);
     // The old parameter stays until nobody reads it; its own step reads what took its place.
-    Some((wide, narrow))
+    Some((wide, narrow, extended))
 }
 
 /// Adds the step to a new counter at the end of the pass.
@@ -342,17 +401,16 @@ fn set_test_at(func: &mut Func, block: BlockId, n: usize, repr: Repr, value: Val
 }
 
 /// Products of a 64-bit counter and a constant.
-fn products(func: &mut Func, tree: &Dominators, l: &Loop) {
+fn products(func: &mut Func, tree: &Dominators, l: &Loop, values: &mut Values) {
     let Some(latch) = latch(tree, l) else { return };
-    let (prims, constants) = (prims(func), Constants::new(func));
-    let counters = counters(func, l, latch, &prims, &constants);
+    let counters = counters(func, l, latch, values);
     let mut found: FxHashMap<(ValueId, u64), Vec<ValueId>> = FxHashMap::default();
     let mut order: Vec<(Counter, u64)> = Vec::new();
     for &block in &l.blocks {
         for inst in &func.blocks[block].insts {
             let Inst::Prim { dst, op, repr: Repr::I64, args: Args::Two([x, c]) } = inst else { continue };
             let Some(counter) = counters.iter().find(|k| k.value == *x && k.repr == Repr::I64) else { continue };
-            let factor = match (op, constants.get(*c)) {
+            let factor = match (op, values.constants.get(*c)) {
                 (PrimOp::Mul, Some(factor)) => factor,
                 // The machine's addresses shift by up to 3.
                 (PrimOp::Shl, Some(bits @ 4..=62)) => 1 << bits,
@@ -376,12 +434,11 @@ fn products(func: &mut Func, tree: &Dominators, l: &Loop) {
         front.push(Inst::Prim { dst: first, op: PrimOp::Mul, repr: Repr::I64, args });
         add_arg(func, l.preheader, l.header, first);
         step(func, l, latch, product, counter.step.wrapping_mul(factor as i64));
-        let mut replace = super::rewrite::Replace::new(func);
         let old = &found[&(counter.value, factor)];
-        old.iter().for_each(|value| replace.set(*value, product));
+        old.iter().for_each(|value| values.replace.set(*value, product));
         for &block in &l.blocks {
             func.blocks[block].insts.retain(|inst| inst.results().0.is_none_or(|v| !old.contains(&v)));
         }
-        replace.apply(func);
     }
+    values.replace.blocks(func, &l.blocks);
 }

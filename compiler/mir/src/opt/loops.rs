@@ -25,19 +25,21 @@ pub struct Loop {
     pub depth: usize,
 }
 
-/// Passes over loops look at the whole function for each. Where that would be more than so many instructions, they find
-/// none: the time that a function takes stays in proportion to its size.
-const WORK: usize = 40_000_000;
+/// Passes over loops look at each instruction as often as there are loops around it. Where that would be more than so many
+/// instructions, they find none: loops can be nested hundreds deep.
+const WORK: usize = 20_000_000;
 
 /// The loops of a function, inner ones before outer ones. Adds the blocks in front and on the ways out.
 pub fn find(func: &mut Func) -> Vec<Loop> {
-    let bodies = bodies(&Dominators::new(func));
-    let size: usize = func.blocks.iter().map(|block| block.insts.len() + 1).sum();
-    if bodies.is_empty() || bodies.len().saturating_mul(size) > WORK {
+    let tree = Dominators::new(func);
+    let bodies = bodies(&tree);
+    let work: usize = bodies.iter().flat_map(|(_, body)| body).map(|block| func.blocks[*block].insts.len() + 1).sum();
+    if bodies.is_empty() || work > WORK {
         return Vec::new();
     }
     for (header, body) in &bodies {
-        add_preheader(func, *header, body);
+        // Blocks that are put in front of other loops jump to these only.
+        add_preheader(func, *header, &tree.preds[*header], body);
     }
     for (_, body) in &bodies {
         split_exits(func, body);
@@ -98,8 +100,10 @@ fn bodies(tree: &Dominators) -> Vec<(BlockId, FxHashSet<BlockId>)> {
     list
 }
 
-fn add_preheader(func: &mut Func, header: BlockId, body: &FxHashSet<BlockId>) {
-    let outside: Vec<BlockId> = func.blocks.indices().filter(|id| !body.contains(id)).collect();
+fn add_preheader(func: &mut Func, header: BlockId, preds: &[BlockId], body: &FxHashSet<BlockId>) {
+    let mut outside: Vec<BlockId> = preds.iter().copied().filter(|id| !body.contains(id)).collect();
+    outside.sort_unstable();
+    outside.dedup();
     let mut edges: Vec<Target> = Vec::new();
     for id in &outside {
         func.blocks[*id].term.for_each_target(|target| {

@@ -10,6 +10,7 @@ mod aggregates;
 mod algebra;
 mod alias;
 mod clean;
+mod copies;
 mod dead_stores;
 mod divide;
 mod fold;
@@ -52,6 +53,7 @@ pub fn passes() -> &'static [Pass] {
     const FOLD: Pass = Pass { name: "fold", run: |p| each(p, fold_and_clean) };
     const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
     const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
+    const COPIES: Pass = Pass { name: "copies", run: |p| with_facts(p, copies::run) };
     const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
     const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
@@ -67,14 +69,14 @@ pub fn passes() -> &'static [Pass] {
         TIDY,
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
-        FRAMES, TIDY, FORWARD, FOLD, DEAD_STORES,
+        FRAMES, TIDY, FORWARD, FOLD, COPIES, DEAD_STORES,
         SELECT, FOLD, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, FOLD,
         Pass { name: "promote", run: |p| with_facts(p, promote::run) }, LOOP_FOLD, LOOP_FORWARD, LOOP_FOLD,
         RANGES, FOLD, HOIST, LOOP_FORWARD, LOOP_DEAD_STORES, LOOP_FOLD,
         // Counters first: of a loop that was repeated they are not seen any more.
         SELECT, FOLD, INDUCTION, FOLD,
-        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, DEAD_STORES, FOLD,
+        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, COPIES, DEAD_STORES, FOLD,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, FOLD, INDUCTION, LOOP_FOLD, HOIST,

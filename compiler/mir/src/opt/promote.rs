@@ -15,7 +15,7 @@
 use super::alias::{Alias, for_each_access};
 use super::loops::{self, Loop};
 use super::proven::Proven;
-use super::rewrite::Constants;
+use super::rewrite::{Constants, Replace};
 use super::ssa::{Scope, Var, rewrite};
 use crate::dominators::Dominators;
 use crate::ir::{Func, Inst, Place, Term};
@@ -44,9 +44,12 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let loops = loops::find(func);
     let tree = Dominators::new(func);
     let proven = Proven::new(func);
+    let constants = Constants::new(func);
+    let mut replace = Replace::new(func);
     for l in &loops {
+        replace.blocks(func, &l.blocks);
         let safe = |place: &Place| proven.is_safe(place, l.preheader, &tree);
-        let vars = choose(func, alias, l, &safe);
+        let vars = choose(func, alias, &constants, l, &safe);
         if vars.is_empty() {
             continue;
         }
@@ -57,7 +60,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
             initial.push(dst);
         }
         let scope = Scope { blocks: &l.blocks, preds: &tree.preds, is_loop: true };
-        let (params, ends) = rewrite(func, &scope, &vars, &initial);
+        let (params, ends) = rewrite(func, &scope, &vars, &initial, &mut replace);
         if let Term::Jump(target) = &mut func.blocks[l.preheader].term {
             target.args.extend(params.iter().map(|n| initial[*n]));
         }
@@ -73,10 +76,11 @@ pub fn run(func: &mut Func, alias: &Alias) {
             func.blocks[*exit].insts.splice(0..0, stores);
         }
     }
+    replace.apply(func);
 }
 
 /// The places of a loop that become values.
-fn choose(func: &Func, alias: &Alias, l: &Loop, safe: &impl Fn(&Place) -> bool) -> Vec<Var> {
+fn choose(func: &Func, alias: &Alias, constants: &Constants, l: &Loop, safe: &impl Fn(&Place) -> bool) -> Vec<Var> {
     let insts = || l.blocks.iter().flat_map(|block| &func.blocks[*block].insts);
     if insts().count() > LARGE {
         return Vec::new();
@@ -103,12 +107,11 @@ fn choose(func: &Func, alias: &Alias, l: &Loop, safe: &impl Fn(&Place) -> bool) 
     used.retain(|_, one| one.plain && (one.stores == 0 || !calls));
     let mut list: Vec<(&Place, Used)> = used.into_iter().collect();
     list.sort_by_key(|(_, one)| (std::cmp::Reverse(one.loads + one.stores), one.order));
-    let constants = Constants::new(func);
     let mut vars = Vec::new();
     let mut count = [0, 0];
     for (place, one) in list {
         let kind = usize::from(!one.repr.is_int());
-        if count[kind] >= PROMOTED || !alone(func, alias, &constants, l, place, &one) {
+        if count[kind] >= PROMOTED || !alone(func, alias, constants, l, place, &one) {
             continue;
         }
         count[kind] += 1;

@@ -50,6 +50,15 @@ impl Replace {
         visit::uses(inst, &mut |v| *v = self.get(*v));
     }
 
+    /// Replaces in some blocks.
+    pub fn blocks(&self, func: &mut Func, blocks: &[BlockId]) {
+        for id in blocks {
+            let block = &mut func.blocks[*id];
+            block.insts.iter_mut().for_each(|inst| self.inst(inst));
+            visit::term_uses(&mut block.term, &mut |v| *v = self.get(*v));
+        }
+    }
+
     /// Replaces everywhere.
     pub fn apply(&self, func: &mut Func) {
         for block in &mut func.blocks {
@@ -98,6 +107,14 @@ impl Constants {
             }
         }
         Self(raws)
+    }
+
+    /// Another one, which was made since.
+    pub fn note(&mut self, value: ValueId, raw: u64) {
+        while self.0.len() <= value.index() {
+            self.0.push(None);
+        }
+        self.0[value] = Some(raw);
     }
 
     /// The register value, if it is one.

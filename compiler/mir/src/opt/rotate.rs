@@ -23,7 +23,7 @@ const MOVED: usize = 8;
 
 /// The pass.
 pub fn run(func: &mut Func) {
-    let tree = Dominators::new(func);
+    let (tree, constants) = (Dominators::new(func), Constants::new(func));
     for &latch in &tree.order {
         let Term::Jump(back) = &func.blocks[latch].term else { continue };
         let (back, [test]) = (back.clone(), &tree.preds[latch][..]) else { continue };
@@ -47,14 +47,14 @@ pub fn run(func: &mut Func) {
                 *target = back.clone();
             }
         });
-        test_the_next_value(func, test);
+        test_the_next_value(func, &constants, test);
     }
 }
 
 /// `x = last` becomes `x + step = last + step`: then the old value of the counter is not needed beside the new one.
-fn test_the_next_value(func: &mut Func, block: BlockId) {
+fn test_the_next_value(func: &mut Func, constants: &Constants, block: BlockId) {
     let Term::Branch { cond, .. } = &func.blocks[block].term else { return };
-    let (cond, constants) = (*cond, Constants::new(func));
+    let cond = *cond;
     let insts = &func.blocks[block].insts;
     let Some((x, repr, last)) = insts.iter().find_map(|inst| match inst {
         Inst::Prim { dst, op: PrimOp::Eq, repr, args: Args::Two([x, c]) } if *dst == cond => {

@@ -38,8 +38,15 @@ pub type Ends = FxHashMap<BlockId, Vec<Option<ValueId>>>;
 
 /// Rewrites the blocks. `initial` gives the value of each place at the entry: for a loop the callers pass them as further
 /// arguments of every jump from outside, in the order of the list that is returned; else they are there already. Returns
-/// which places the entry has parameters for, and the values at the ends of the blocks.
-pub fn rewrite(func: &mut Func, scope: &Scope, vars: &[Var], initial: &[ValueId]) -> (Vec<usize>, Ends) {
+/// which places the entry has parameters for, and the values at the ends of the blocks. What became of loads goes into
+/// `replace`, which the caller applies.
+pub fn rewrite(
+    func: &mut Func,
+    scope: &Scope,
+    vars: &[Var],
+    initial: &[ValueId],
+    replace: &mut Replace,
+) -> (Vec<usize>, Ends) {
     let inside: FxHashSet<BlockId> = scope.blocks.iter().copied().collect();
     let numbers: FxHashMap<Place, usize> = vars.iter().enumerate().map(|(n, v)| (v.place.clone(), n)).collect();
     let live = live_in(func, scope, vars, &numbers, &inside);
@@ -57,7 +64,6 @@ pub fn rewrite(func: &mut Func, scope: &Scope, vars: &[Var], initial: &[ValueId]
             params.insert(block, list);
         }
     }
-    let mut replace = Replace::new(func);
     let mut ends: Ends = FxHashMap::default();
     for &block in scope.blocks {
         let mut now: Vec<Option<ValueId>> = match params.get(&block) {
@@ -108,8 +114,6 @@ pub fn rewrite(func: &mut Func, scope: &Scope, vars: &[Var], initial: &[ValueId]
         });
         func.blocks[block].term = term;
     }
-    // Uses behind the blocks, and arguments of jumps backwards.
-    replace.apply(func);
     for now in ends.values_mut() {
         now.iter_mut().flatten().for_each(|v| *v = replace.get(*v));
     }

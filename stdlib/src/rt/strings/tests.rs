@@ -121,7 +121,7 @@ fn a_long_string_is_told_up_to_the_greatest_int() {
 #[test]
 fn values_to_text_and_back() {
     let text = |elem: Elem, raw: u64| {
-        let params = [raw as i64, i64::from(elem.code())];
+        let params = [0, raw as i64, i64::from(elem.code())];
         built(|f| &f.write, 40, &[], &params)
     };
     assert_eq!(text(Elem::Int, 0xFFFB), "-5");
@@ -132,10 +132,12 @@ fn values_to_text_and_back() {
     assert_eq!(text(Elem::Time, 1_500_000_000), "T#1s500ms");
     assert_eq!(text(Elem::Char, u64::from(b'x')), "x");
     assert_eq!(text(Elem::Char, 0), "");
-    assert_eq!(built(|f| &f.write, 3, &[], &[12345, i64::from(Elem::Dint.code())]), "123");
+    assert_eq!(built(|f| &f.write, 3, &[], &[0, 12345, i64::from(Elem::Dint.code())]), "123");
+    assert_eq!(built(|f| &f.write, 9, &[], &[4, -77, i64::from(Elem::Dint.code())]), "junk-77");
+    assert_eq!(built(|f| &f.write, 6, &[], &[9, 77, i64::from(Elem::Dint.code())]), "junk!!");
     let wchar = i64::from(Elem::Wchar.code());
-    assert_eq!(call(true, &WSTRING.write, &[("", 1)], &[0xD83D, wchar]).1, 1, "half a pair is a unit too");
-    assert_eq!(call(false, &STRING.write, &[("", 1)], &[0x20AC, wchar]).0, "?");
+    assert_eq!(call(true, &WSTRING.write, &[("", 1)], &[0, 0xD83D, wchar]).1, 1, "half a pair is a unit too");
+    assert_eq!(call(false, &STRING.write, &[("", 1)], &[0, 0x20AC, wchar]).0, "?");
     let read = |elem: Elem, t: &str| number_of(|f| &f.read, &[(t, 40)], &[i64::from(elem.code())]) as u64;
     assert_eq!(read(Elem::Int, " -5x"), 0xFFFB);
     assert_eq!(read(Elem::Lreal, "2.5e-1"), 0.25f64.to_bits());
@@ -198,4 +200,72 @@ fn native_and_evaluated_are_one() {
         // A caller's mistake gives a number, not a panic.
         (f.eval)(&mut [], &[], &[]);
     }
+}
+
+/// Every operation beside one on lists of characters, on random texts of few different characters; those that give a part of
+/// a string also over that string itself.
+#[test]
+fn random_texts_agree_with_lists() {
+    let mut state = 1u32;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(1_103_515_245).wrapping_add(12345);
+        (state >> 16) as usize % below
+    };
+    type Model = fn(&[char], &[char], usize, usize) -> Vec<char>;
+    fn cut(a: &[char], l: usize, p: usize) -> Option<(usize, usize)> {
+        (p >= 1 && p <= a.len()).then(|| (p - 1, (p - 1 + l).min(a.len())))
+    }
+    let models: [(fn(&TextFns) -> &TextFn, usize, Model); 6] = [
+        (|f| &f.left, 1, |a, _, l, _| a[..l.min(a.len())].to_vec()),
+        (|f| &f.right, 1, |a, _, l, _| a[a.len() - l.min(a.len())..].to_vec()),
+        (|f| &f.mid, 1, |a, _, l, p| cut(a, l, p).map_or(vec![], |(s, e)| a[s..e].to_vec())),
+        (|f| &f.delete, 1, |a, _, l, p| cut(a, l, p).map_or(a.to_vec(), |(s, e)| [&a[..s], &a[e..]].concat())),
+        (|f| &f.replace, 2, |a, b, l, p| cut(a, l, p).map_or(a.to_vec(), |(s, e)| [&a[..s], b, &a[e..]].concat())),
+        (|f| &f.insert, 2, |a, b, p, _| if p > a.len() { a.to_vec() } else { [&a[..p], b, &a[p..]].concat() }),
+    ];
+    for round in 0..4000 {
+        let mut text = |most: usize| -> String { (0..next(most + 1)).map(|_| ['a', 'b', '\u{e4}'][next(3)]).collect() };
+        let (a, b) = (text(if round % 4 == 0 { 40 } else { 12 }), text(5));
+        let (chars, other): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+        let (a_capacity, b_capacity) = ((chars.len() + next(4)) as u32, (other.len() + next(12)) as u32);
+        let (l, p, capacity) = (next(14), next(14), next(50) as u32);
+        for (pick, texts, model) in models {
+            let expected = model(&chars, &other, l, p);
+            let params = [l as i64, p as i64];
+            let all = [(a.as_str(), a_capacity), (b.as_str(), b_capacity)];
+            for wide in [false, true] {
+                let f = pick(TextFns::of(wide));
+                let mut places = vec![("", capacity)];
+                places.extend(&all[..texts]);
+                let cut: String = expected.iter().take(capacity as usize).collect();
+                assert_eq!(call(wide, f, &places, &params[..f.params]).0, cut, "{} of {all:?}, {params:?}", f.symbol);
+                if texts == 1 {
+                    let over: String = expected.iter().collect();
+                    assert_eq!(over_itself(wide, f, &a, a_capacity, &params[..f.params]), over, "{} {a}", f.symbol);
+                }
+            }
+        }
+        let find = chars.windows(other.len().max(1)).position(|w| w == other).map_or(0, |at| at + 1);
+        let pair = [(a.as_str(), a_capacity), (b.as_str(), b_capacity)];
+        assert_eq!(number_of(|f| &f.find, &pair, &[]), find as i64, "{pair:?}");
+        assert_eq!(number_of(|f| &f.compare, &pair, &[]), chars.cmp(&other) as i64, "{pair:?}");
+        assert_eq!(number_of(|f| &f.compare, &[pair[0], pair[0]], &[]), 0, "{pair:?}");
+        let joined: Vec<char> = "junk".chars().take(capacity as usize).chain(chars).take(capacity as usize).collect();
+        assert_eq!(built(|f| &f.put, capacity, &[pair[0]], &[4]), joined.iter().collect::<String>(), "{pair:?}");
+    }
+}
+
+/// The string in a memory that ends with it, built over itself.
+fn over_itself(wide: bool, f: &TextFn, text: &str, capacity: u32, params: &[i64]) -> String {
+    let bytes = if wide { 2 } else { 1 };
+    let mut units: Vec<u16> = text.encode_utf16().collect();
+    units.resize(capacity as usize + 1, 0);
+    let mut mem: Vec<u8> = units.iter().flat_map(|u| u.to_le_bytes()[..bytes].to_vec()).collect();
+    let place = Text { at: 0, capacity };
+    let params: Vec<u64> = params.iter().map(|p| *p as u64).collect();
+    let length = (f.eval)(&mut mem, &[place, place], &params) as usize;
+    let unit = |n: usize| if wide { Wide::get(&mem, n) } else { Narrow::get(&mem, n) };
+    let units: Vec<u16> = (0..=capacity as usize).map(unit).take_while(|u| *u != 0).collect();
+    assert_eq!(units.len(), length, "{}", f.symbol);
+    String::from_utf16_lossy(&units)
 }
