@@ -10,8 +10,10 @@ use plcc_diag::{Diagnostic, codes};
 impl Checker<'_, '_> {
     /// Reports it if a place may not be written (\[S5\]). `passed` says it goes to a VAR_IN_OUT or an output.
     pub fn check_writable(&mut self, place: &Place) -> bool {
+        // Behind a reference only the path from there on counts.
+        let from = place.steps.iter().rposition(|step| matches!(step, Step::Deref)).map_or(0, |n| n + 1);
         let var = match &place.root {
-            Root::Var(var) => *var,
+            Root::Var(var) if from == 0 => Some(*var),
             Root::Address(address) => {
                 if address.area == Area::Input {
                     self.report(
@@ -22,9 +24,11 @@ impl Checker<'_, '_> {
                 }
                 return true;
             }
-            _ => return true,
+            _ => None,
         };
-        if charts::is_step(self.cx, var) {
+        if let Some(var) = var
+            && charts::is_step(self.cx, var)
+        {
             let text = self.place_text(place);
             self.report(
                 Diagnostic::new(codes::NOT_WRITABLE, place.span, format!("`{text}` belongs to the chart"))
@@ -33,7 +37,7 @@ impl Checker<'_, '_> {
             return false;
         }
         // The first member from the outside decides for instances: inputs may be written, outputs not.
-        for step in &place.steps {
+        for step in &place.steps[from..] {
             match step {
                 Step::Member(member) if self.cx.defs.vars[*member].section == Section::Output => {
                     let name = self.cx.defs.vars[*member].name.clone();
@@ -59,10 +63,10 @@ impl Checker<'_, '_> {
                     );
                     return false;
                 }
-                Step::Deref => return true,
                 _ => {}
             }
         }
+        let Some(var) = var else { return true };
         let v = self.cx.defs.vars[var].clone();
         let (name, span) = (v.name, v.span);
         if v.constant {

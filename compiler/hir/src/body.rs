@@ -379,7 +379,7 @@ pub struct OutputArg {
     pub output: VarId,
     /// NOT before the name; BOOL only.
     pub negated: bool,
-    /// The conversion from the output's type to the target's.
+    /// The conversion from the output's elementary type to the target's; a CHAR also goes to a STRING.
     pub convert: Option<(Elem, Elem)>,
     /// Where it goes.
     pub target: Place,

@@ -9,8 +9,9 @@ use crate::rules::{self, Implicit};
 use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
-use plcc_syntax::ast;
+use plcc_syntax::ast::{self, BinaryOp};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 /// What a callee turned out to be.
 pub(crate) enum Target {
@@ -31,6 +32,8 @@ pub(crate) enum Special {
     SizeOf,
     /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`.
     Bound { upper: bool },
+    /// `__ISVALIDREF(r)`.
+    IsValidRef,
 }
 
 /// What a call of a user's POU is given.
@@ -50,8 +53,14 @@ impl<'a> Arguments<'a> {
 }
 
 impl<'a> Checker<'_, 'a> {
-    /// A call as an operand: it must give a value.
+    /// A call as an operand: it must give a value. A REFERENCE TO is followed.
     pub fn call_operand(&mut self, call: &'a ast::Call, span: Span, want: Option<TypeId>) -> Operand {
+        let value = self.call_itself(call, span, want);
+        self.followed_value(value)
+    }
+
+    /// As [`Self::call_operand`], but a REFERENCE TO is the reference.
+    pub fn call_itself(&mut self, call: &'a ast::Call, span: Span, want: Option<TypeId>) -> Operand {
         match self.callee(&call.callee) {
             Target::Reported => {
                 self.check_arguments_alone(&call.args);
@@ -150,8 +159,8 @@ impl<'a> Checker<'_, 'a> {
         match found {
             Found::Var(var) => {
                 let ty = self.type_of_var(var);
-                if self.cx.instance_of(ty).is_some() {
-                    let place = Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span };
+                let place = self.followed(Place { root: Root::Var(var), steps: Vec::new(), ty, span: name.span });
+                if self.cx.instance_of(place.ty).is_some() {
                     return self.instance_callee(place);
                 }
                 if let Some(scope) = self.scope
@@ -159,7 +168,11 @@ impl<'a> Checker<'_, 'a> {
                 {
                     return Target::User(Callee::Action(None, action), action);
                 }
-                if ty == Types::ERROR && !self.cx.pous.contains_key(&key) && plcc_stdlib::funcs::find(&key).is_none() {
+                let callable = match self.cx.pous.get(&key) {
+                    Some(pou) => self.cx.defs.pous[*pou].kind == PouKind::Function,
+                    None => plcc_stdlib::funcs::find(&key).is_some(),
+                };
+                if ty == Types::ERROR && !callable {
                     return Target::Reported;
                 }
             }
@@ -172,8 +185,10 @@ impl<'a> Checker<'_, 'a> {
         if let Some(&pou) = self.cx.pous.get(&key)
             && !builtin
         {
-            return match self.cx.defs.pous[pou].kind {
+            let kind = self.cx.defs.pous[pou].kind;
+            return match kind {
                 PouKind::Function => Target::User(Callee::Function(pou), pou),
+                _ if !self.cx.first_report(self.scope, &format!("pou {key}")) => Target::Reported,
                 kind => {
                     let what = if kind == PouKind::Program { "a PROGRAM" } else { "a FUNCTION_BLOCK" };
                     self.report(
@@ -192,6 +207,7 @@ impl<'a> Checker<'_, 'a> {
             "REF" => return Target::Special(Special::Reference { pointer: false }),
             "ADR" => return Target::Special(Special::Reference { pointer: true }),
             "SIZEOF" => return Target::Special(Special::SizeOf),
+            "__ISVALIDREF" => return Target::Special(Special::IsValidRef),
             "LOWER_BOUND" => return Target::Special(Special::Bound { upper: false }),
             "UPPER_BOUND" => return Target::Special(Special::Bound { upper: true }),
             _ => {}
@@ -200,10 +216,17 @@ impl<'a> Checker<'_, 'a> {
             return Target::Standard(func);
         }
         if let Found::Var(var) = found {
-            let ty = self.cx.type_name(self.cx.defs.vars[var].ty);
+            let id = self.cx.defs.vars[var].ty;
+            let ty = self.cx.type_name(id);
+            let help = match self.cx.defs.types.get(id) {
+                Type::Array { .. } | Type::AnyArray { .. } => {
+                    format!("an element of an array is written `{}[...]`", name.text)
+                }
+                _ => "only functions, instances of function blocks and actions can be called".into(),
+            };
             self.report(
                 Diagnostic::new(codes::NOT_CALLABLE, name.span, format!("`{}` is a variable of type {ty}", name.text))
-                    .help("only functions, instances of function blocks and actions can be called"),
+                    .help(help),
             );
             return Target::Reported;
         }
@@ -225,7 +248,7 @@ impl<'a> Checker<'_, 'a> {
                 name.span,
                 format!("there is no function or instance `{}`", name.text),
             )
-            .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
+            .help_if(foreign_function(&key).map(String::from).or(hint.map(|h| format!("did you mean `{h}`?")))),
         );
         Target::Reported
     }
@@ -306,6 +329,18 @@ impl<'a> Checker<'_, 'a> {
         for arg in call.args {
             match &arg.kind {
                 ast::ArgKind::Positional(e) => {
+                    if let Some((name, at)) = self.equals_for_assign(pou, e) {
+                        self.report(
+                            Diagnostic::new(
+                                codes::EQUALS_FOR_ASSIGN,
+                                at,
+                                "`=` compares, it gives no value to an input",
+                            )
+                            .help(format!("write `{name} := ...`")),
+                        );
+                        fine = false;
+                        continue;
+                    }
                     let Some(param) = next.next() else {
                         self.too_many(pou, given_count, arg.span);
                         return None;
@@ -327,6 +362,15 @@ impl<'a> Checker<'_, 'a> {
                             continue;
                         }
                         (None, _) => {}
+                    }
+                    if let Some(output) = value.as_ref().and_then(|e| self.output_turned_around(pou, name, e)) {
+                        let (message, help) = (
+                            format!("`{output}` is an output of the callee"),
+                            format!("an output is fetched with `=>`, its name first: `{output} => {}`", name.text),
+                        );
+                        self.report(Diagnostic::new(codes::WRONG_DIRECTION, arg.span, message).help(help));
+                        fine = false;
+                        continue;
                     }
                     let Some(param) = self.parameter(pou, name, &mut given) else {
                         if let Some(e) = value {
@@ -382,6 +426,27 @@ impl<'a> Checker<'_, 'a> {
         }
         fine &= self.all_in_outs_given(pou, &given, call.at);
         fine.then_some(out)
+    }
+
+    /// The parameter in `parameter = value`, where that compares nothing, and the place of the `=`.
+    fn equals_for_assign(&self, pou: PouId, e: &ast::Expr) -> Option<(SmolStr, Span)> {
+        let ast::ExprKind::Binary(BinaryOp::Eq, at, left, _) = &e.kind else { return None };
+        let ast::ExprKind::Name(name) = &left.kind else { return None };
+        let known = self.cx.pou_slots[pou].scope.contains_key(&fold(&name.text));
+        (known && matches!(self.lookup(name), Found::Missing)).then(|| (name.text.clone(), *at))
+    }
+
+    /// The output that `variable := output` was meant to fetch: `name` is no parameter but a variable here, `value` the
+    /// other way round.
+    fn output_turned_around(&self, pou: PouId, name: &ast::Name, value: &ast::Expr) -> Option<SmolStr> {
+        let ast::ExprKind::Name(output) = &value.kind else { return None };
+        let scope = &self.cx.pou_slots[pou].scope;
+        let Some(Local::Var(var)) = scope.get(&fold(&output.text)) else { return None };
+        let fetched = self.cx.defs.vars[*var].section == Section::Output
+            && !scope.contains_key(&fold(&name.text))
+            && matches!(self.lookup(name), Found::Var(_))
+            && matches!(self.lookup(output), Found::Missing);
+        fetched.then(|| self.cx.defs.vars[*var].name.clone())
     }
 
     /// `Some(true)` for EN, `Some(false)` for ENO, unless the POU declares a parameter of that name.
@@ -493,7 +558,8 @@ impl<'a> Checker<'_, 'a> {
     fn pass(&mut self, param: VarId, e: &'a ast::Expr, out: &mut Call) -> bool {
         let ty = self.type_of_var(param);
         if self.cx.defs.vars[param].section == Section::InOut {
-            let Some(place) = self.place(e) else { return false };
+            let place = if self.is_reference_to(ty) { self.place_itself(e) } else { self.place(e) };
+            let Some(place) = place else { return false };
             if !self.in_out_fits(param, ty, &place) || !self.check_writable(&place) {
                 return false;
             }
@@ -504,7 +570,10 @@ impl<'a> Checker<'_, 'a> {
             out.in_outs.push((param, place));
             return passed;
         }
-        let value = self.operand(e, Some(ty));
+        let value = match self.is_reference_to(ty) {
+            true => Operand::Value { expr: self.value(e, ty), ty },
+            false => self.operand(e, Some(ty)),
+        };
         self.pass_value(param, value, e.span, out)
     }
 
@@ -548,20 +617,16 @@ impl<'a> Checker<'_, 'a> {
             return true;
         }
         let types = &self.cx.defs.types;
-        let lax = match (types.get(ty).clone(), types.get(place.ty).clone()) {
+        match (types.get(ty).clone(), types.get(place.ty).clone()) {
             (Type::AnyString { wide: a }, Type::String { wide: b, .. } | Type::AnyString { wide: b }) if a == b => {
                 return true;
             }
             (Type::AnyArray { dims, elem }, Type::Array { dims: d, elem: e }) if dims == d.len() && elem == e => {
                 return true;
             }
-            (Type::String { wide: a, capacity: m }, Type::String { wide: b, capacity: n }) => a == b && n >= m,
-            (Type::Array { dims: a, elem: x }, Type::Array { dims: b, elem: y }) => {
-                let count = |d: &[(i64, i64)]| d.iter().map(|(l, h)| h - l + 1).product::<i64>();
-                x == y && count(&a) == count(&b)
-            }
-            _ => false,
-        };
+            _ => {}
+        }
+        let lax = self.similar_memory(ty, place.ty);
         let (want, have) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
         let (name, span) = (self.cx.defs.vars[param].name.clone(), self.cx.defs.vars[param].span);
         let d = Diagnostic::new(
@@ -582,10 +647,24 @@ impl<'a> Checker<'_, 'a> {
         false
     }
 
+    /// Whether a variable of type `have` can be used as one of type `want` in its memory (\[S4\] \[P2\], with a warning):
+    /// a longer string, an array with other bounds of equal length.
+    pub fn similar_memory(&self, want: TypeId, have: TypeId) -> bool {
+        let types = &self.cx.defs.types;
+        match (types.get(want), types.get(have)) {
+            (Type::String { wide: a, capacity: m }, Type::String { wide: b, capacity: n }) => a == b && n >= m,
+            (Type::Array { dims: a, elem: x }, Type::Array { dims: b, elem: y }) => {
+                let count = |d: &[(i64, i64)]| d.iter().map(|(l, h)| h - l + 1).product::<i64>();
+                x == y && count(a) == count(b)
+            }
+            _ => false,
+        }
+    }
+
     /// `output => target`.
     fn fetch(&mut self, param: VarId, negated: bool, target: &'a ast::Expr) -> Option<OutputArg> {
         let ty = self.type_of_var(param);
-        let place = self.place(target)?;
+        let place = if self.is_reference_to(ty) { self.place_itself(target) } else { self.place(target) }?;
         if !self.check_writable(&place) || ty == Types::ERROR {
             return None;
         }
@@ -626,17 +705,19 @@ impl<'a> Checker<'_, 'a> {
                     }
                 }
                 _ => {
-                    let strings = |t| match self.cx.defs.types.get(t) {
-                        Type::String { wide, .. } => Some(*wide),
-                        _ => None,
-                    };
-                    if strings(ty).is_none() || strings(ty) != strings(place.ty) {
+                    // A string, or a single character, goes to a string of its kind.
+                    let kind = self.text_kind(ty);
+                    if kind.is_none() || kind != self.string_kind(place.ty) {
                         let (have, want) = (self.cx.type_name(ty), self.cx.type_name(place.ty));
-                        self.report(Diagnostic::new(
-                            codes::TYPE_MISMATCH,
-                            target.span,
-                            format!("the output is {have}, this variable is {want}"),
-                        ));
+                        let followed = self.is_reference_to(ty).then_some("read it behind the call, `instance.output`");
+                        self.report(
+                            Diagnostic::new(
+                                codes::TYPE_MISMATCH,
+                                target.span,
+                                format!("the output is {have}, this variable is {want}"),
+                            )
+                            .help_if(followed.map(String::from)),
+                        );
                         return None;
                     }
                     None
@@ -668,7 +749,24 @@ impl<'a> Checker<'_, 'a> {
         match special {
             Special::Reference { pointer } => self.reference_to(pointer, call, span),
             Special::SizeOf => self.size_of(call, span),
+            Special::IsValidRef => self.is_valid_reference(call, span),
             Special::Bound { upper } => self.bound(upper, call, span),
         }
     }
+}
+
+/// What IEC 61131-3 has for a function of another language, by its folded name.
+fn foreign_function(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "POW" | "POWER" => "a power is written `x ** y` or EXPT(x, y)",
+        "SQR" | "SQUARE" => "a square is written `x * x`, a square root SQRT(x)",
+        "STRLEN" | "LENGTH" => "the length of a text is LEN(s)",
+        "SUBSTR" | "SUBSTRING" => "a part of a text is MID(s, length, position), LEFT or RIGHT",
+        "CEILING" => "the next greater integer is CEIL(x)",
+        "FABS" => "the absolute value is ABS(x)",
+        "PRINT" | "PRINTF" | "PUTS" | "WRITELN" | "ECHO" => {
+            "a program prints nothing; `--watch` and `--trace` show variables"
+        }
+        _ => return None,
+    })
 }

@@ -71,6 +71,11 @@ fn duplicate(cx: &mut Cx, what: &str, name: &ast::Name, first: Span) {
 
 fn declare_type<'a>(cx: &mut Cx<'a>, decl: &'a ast::TypeDecl) {
     let key = fold(&decl.name.text);
+    // One that lacks its name cannot be found by it; so below.
+    if key.is_empty() {
+        cx.type_slots.push(TypeSlot { decl, early: None, state: State::Todo });
+        return;
+    }
     if let Some(&slot) = cx.types.get(&key) {
         return duplicate(cx, "type", &decl.name, cx.type_slots[slot].decl.name.span);
     }
@@ -98,6 +103,9 @@ fn declare_pou<'a>(cx: &mut Cx<'a>, pou: &'a ast::Pou, unit: &Unit<'a>) -> PouId
     let key = fold(&pou.name.text);
     let id = new_pou(cx, &pou.name, kind, unit.builtin, Some(&pou.body), pou.span);
     charts::read_options(cx, id, pou, unit);
+    if key.is_empty() {
+        return id;
+    }
     if unit.builtin {
         // A name that no user can hide, and for some blocks the only one.
         cx.pous.insert(internal_name(&key), id);
@@ -271,6 +279,9 @@ fn declare_globals<'a>(cx: &mut Cx<'a>, section: &'a ast::VarSection, resource: 
     for decl in &section.vars {
         for name in &decl.names {
             let key = fold(&name.text);
+            if key.is_empty() {
+                continue;
+            }
             // Each RESOURCE may have a global of a name: there the name means its own.
             let first = cx.globals.get(&key).copied();
             let taken = first.filter(|first| {
@@ -354,6 +365,9 @@ fn declare_var<'a>(
     name: &'a ast::Name,
 ) {
     let key = fold(&name.text);
+    if key.is_empty() {
+        return;
+    }
     if let Some(&first) = cx.pou_slots[id].scope.get(&key) {
         if let Local::Var(var) = first {
             doubt_type(cx, var, &decl.ty);

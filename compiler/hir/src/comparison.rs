@@ -67,6 +67,10 @@ impl Checker<'_, '_> {
                     let (x, y) = (x.unwrap_or(Types::elem(Elem::Int)), y.unwrap_or(Types::elem(Elem::Int)));
                     return self.no_common(op.text(), x, y, sides, span);
                 }
+                Some(Elem::Bool) if !equality && i == 0 && is_comparison(&a) => {
+                    let help = "a comparison gives BOOL; write both and join them: `1 < x AND x < 5`";
+                    return self.no_operator(op.text(), ty, sides[i], help);
+                }
                 Some(Elem::Bool) if !equality => {
                     return self.no_operator(op.text(), ty, sides[i], "BOOL has no order; use = or <>");
                 }
@@ -157,4 +161,9 @@ impl Checker<'_, '_> {
         let args = vec![retype(a, ty), retype(b, ty)];
         Some(Operand::value(ExprKind::Op(op, elem, args), BOOL(), span))
     }
+}
+
+fn is_comparison(operand: &Operand) -> bool {
+    let Operand::Value { expr, .. } = operand else { return false };
+    matches!(&expr.kind, ExprKind::Op(Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne, ..))
 }

@@ -174,7 +174,8 @@ fn configuration<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration) -> Option<
     crate::resources::check(cx, &mut app);
     crate::var_config::apply(cx, config, &mut app);
     crate::var_config::report_open(cx, &app);
-    if config.resources.iter().all(|r| r.programs.is_empty()) {
+    let half_read = cx.half_read.contains(&config.name.span.file);
+    if config.resources.iter().all(|r| r.programs.is_empty()) && !half_read {
         cx.push(
             Diagnostic::new(codes::NO_PROGRAM, config.name.span, "this CONFIGURATION runs no program")
                 .help("add `PROGRAM P1 WITH Task1 : Main;`"),
@@ -210,9 +211,13 @@ fn resource<'a>(cx: &mut Cx<'a>, decl: &'a ast::Resource) -> Resource {
                 let found = resource.tasks.iter().position(|t| t.name.eq_ignore_ascii_case(&name.text));
                 let Some(found) = found else {
                     let hint = similar(&name.text, resource.tasks.iter().map(|t| t.name.as_str()));
+                    let help = match hint {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("declare it: `TASK {}(INTERVAL := T#10ms, PRIORITY := 1);`", name.text),
+                    };
                     cx.push(
                         Diagnostic::new(codes::UNKNOWN_TASK, name.span, format!("there is no TASK `{}`", name.text))
-                            .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
+                            .help(help),
                     );
                     continue;
                 };
@@ -349,6 +354,12 @@ fn connection<'a>(cx: &mut Cx<'a>, pou: PouId, arg: &'a ast::Arg, program: &mut 
     };
     let wanted = if is_output { Section::Output } else { Section::Input };
     let Some(var) = found.filter(|v| cx.defs.vars[*v].section == wanted) else {
+        if !is_output && found.is_some_and(|v| cx.defs.vars[v].section == Section::Output) {
+            let help = format!("fetch it with `{} => variable`", name.text);
+            let message = format!("`{}` is an output", name.text);
+            cx.push(Diagnostic::new(codes::WRONG_DIRECTION, name.span, message).help(help));
+            return;
+        }
         let names = cx.defs.pous[pou].vars.iter().map(|v| &cx.defs.vars[*v]).filter(|v| v.section == wanted);
         let hint = similar(&name.text, names.map(|v| v.name.as_str()));
         let what = if is_output { "output" } else { "input" };

@@ -242,9 +242,7 @@ pub fn type_name(defs: &Defs, ty: TypeId) -> String {
         Type::Enum(id) => defs.enums[*id].name.to_string(),
         Type::Subrange { base, low, high } => format!("{} ({low}..{high})", base.name()),
         Type::Instance(pou) => defs.pous[*pou].name.to_string(),
-        Type::Ref { pointer, target } => {
-            format!("{} {}", if *pointer { "POINTER TO" } else { "REF_TO" }, type_name(defs, *target))
-        }
+        Type::Ref { kind, target } => format!("{} {}", kind.keyword(), type_name(defs, *target)),
     }
 }
 
@@ -256,6 +254,7 @@ pub fn similar<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> Option
         .filter(|n| !n.starts_with('$'))
         .map(|n| (strsim::osa_distance(&wanted, &n.to_ascii_uppercase()), n))
         .filter(|(d, _)| *d <= limit)
-        .min()
+        // Of equally near ones that which begins alike.
+        .min_by_key(|(d, n)| (*d, !n.get(..1).is_some_and(|c| wanted.starts_with(&c.to_ascii_uppercase())), *n))
         .map(|(_, n)| n.to_string())
 }

@@ -1,7 +1,9 @@
 //! Where a mistake of syntax makes further messages doubtful: one mistake, one message.
 
 use crate::cx::Unit;
-use plcc_diag::Span;
+use plcc_diag::{Code, Diagnostics, Span, codes};
+use plcc_syntax::ast::Unnamed;
+use smol_str::SmolStr;
 
 /// The doubtful places of all files.
 pub(crate) struct Doubtful {
@@ -35,6 +37,44 @@ impl Doubtful {
         last.file == span.file && end + point > span.start
     }
 }
+
+/// Behind declarations without a name: as many names as they are, which are used and not declared, are taken for theirs, and
+/// their uses are no further mistakes.
+pub(crate) fn find_unnamed(units: &[Unit], diags: &mut Diagnostics) {
+    for unit in units {
+        let Unnamed { count, names } = &unit.ast.unnamed;
+        let name_at = |span: Span| {
+            let n = names.binary_search_by_key(&(span.start, span.end), |(_, s)| (s.start, s.end)).ok();
+            n.filter(|_| span.file == unit.file).map(|n| &names[n].0)
+        };
+        let mut undeclared: Vec<(Span, &SmolStr)> = diags
+            .iter()
+            .filter(|d| UNDECLARED.contains(&d.code))
+            .filter_map(|d| Some((d.primary.span, name_at(d.primary.span)?)))
+            .collect();
+        undeclared.sort_by_key(|(span, _)| *span);
+        let mut meant: Vec<SmolStr> = Vec::new();
+        for (_, name) in undeclared {
+            if meant.len() < *count && !meant.contains(name) {
+                meant.push(name.clone());
+            }
+        }
+        diags.retain(|d| {
+            !UNDECLARED.contains(&d.code) || !name_at(d.primary.span).is_some_and(|name| meant.contains(name))
+        });
+    }
+}
+
+/// What is said of a name that is not declared, or means something else.
+const UNDECLARED: &[Code] = &[
+    codes::UNKNOWN_NAME,
+    codes::UNKNOWN_TYPE,
+    codes::UNKNOWN_MEMBER,
+    codes::UNKNOWN_FUNCTION,
+    codes::UNKNOWN_PARAMETER,
+    codes::NOT_A_VARIABLE,
+    codes::NOT_CALLABLE,
+];
 
 #[cfg(test)]
 mod tests {

@@ -9,7 +9,7 @@ use crate::defs::*;
 use crate::init::Init;
 use crate::place::Found;
 use crate::rules::{self, Implicit};
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::{Elem, Family};
 use plcc_stdlib::ops::Op;
@@ -76,8 +76,11 @@ impl<'c, 'a> Checker<'c, 'a> {
         self.cx.elem_of(ty)
     }
 
-    /// An expression where `want` is the type of its place.
+    /// An expression where `want` is the type of its place. A REFERENCE TO is bound to the variable that it names.
     pub fn value(&mut self, e: &'a ast::Expr, want: TypeId) -> Expr {
+        if self.is_reference_to(want) {
+            return self.reference_value(e, want);
+        }
         let operand = self.operand(e, Some(want));
         self.coerce(operand, e.span, want)
     }
@@ -333,6 +336,10 @@ impl<'c, 'a> Checker<'c, 'a> {
         let types = &self.cx.defs.types;
         match (types.get(from), types.get(to)) {
             (Type::Elem(a), Type::Elem(b)) => d = d.help(conversion_help(*a, *b)),
+            (Type::String { .. }, Type::Enum(id)) => {
+                let names = self.value_names(*id);
+                d = d.help(format!("a value of an enumeration stands without quotes: {names}"));
+            }
             _ if self.is_text(from) || self.is_text(to) => d = d.help_if(self.text_help(&expr, from, to)),
             (Type::Enum(_), Type::Enum(_)) => d = d.help("values of different enumerations do not mix"),
             (Type::Enum(id), Type::Elem(b)) => {
@@ -343,9 +350,15 @@ impl<'c, 'a> Checker<'c, 'a> {
                 ));
             }
             (Type::Elem(_), Type::Enum(id)) => {
-                let names: Vec<&str> =
-                    self.cx.defs.enums[*id].values.iter().take(6).map(|(n, _, _)| n.as_str()).collect();
-                d = d.help(format!("use one of its values: {}", names.join(", ")));
+                d = d.help(format!("use one of its values: {}", self.value_names(*id)));
+            }
+            (Type::Null, _) => {
+                d = d.help(
+                    "only a REF_TO or POINTER TO can be NULL; `r REF= NULL` lets a REFERENCE TO refer to nothing",
+                );
+            }
+            (_, Type::Ref { kind: RefKind::ReferenceTo, .. }) => {
+                d = d.help("a REFERENCE TO is given a variable of the type that it refers to");
             }
             (Type::Instance(pou), _) => {
                 let outputs: Vec<&str> = self.cx.defs.pous[*pou]
@@ -365,6 +378,12 @@ impl<'c, 'a> Checker<'c, 'a> {
         error_expr(span)
     }
 
+    /// The first values of an enumeration.
+    fn value_names(&self, id: EnumId) -> String {
+        let names: Vec<&str> = self.cx.defs.enums[id].values.iter().take(6).map(|(n, _, _)| n.as_str()).collect();
+        names.join(", ")
+    }
+
     fn coerce_int(&mut self, v: i128, span: Span, target: TypeId) -> Expr {
         let constant = |raw, ty| Expr { kind: ExprKind::Const(raw), ty, span };
         if let Type::Enum(id) = *self.cx.defs.types.get(target) {
@@ -375,7 +394,7 @@ impl<'c, 'a> Checker<'c, 'a> {
             return self.mismatch(number, Types::elem(Elem::Int), target);
         }
         let Some(elem) = self.elem_of(target) else {
-            if let Type::Ref { pointer: true, .. } = self.cx.defs.types.get(target)
+            if let Type::Ref { kind: RefKind::PointerTo, .. } = self.cx.defs.types.get(target)
                 && let Ok(offset) = u32::try_from(v)
             {
                 return constant(u64::from(offset), target);
@@ -430,6 +449,13 @@ impl<'c, 'a> Checker<'c, 'a> {
                     return error_expr(span);
                 }
                 Expr { kind: ExprKind::Const(real_bits(elem, v)), ty: target, span }
+            }
+            Some(elem) if elem.is_integer() && v.fract() == 0.0 && !self.codesys(span) => {
+                self.cx.codesys_only += 1;
+                let message = format!("this is a real literal, but {} is needed here", elem.name());
+                let help = format!("write the number without its fraction: `{v}`");
+                self.report(Diagnostic::new(codes::TYPE_MISMATCH, span, message).help(help));
+                error_expr(span)
             }
             _ => {
                 let ty = Types::elem(Elem::Lreal);

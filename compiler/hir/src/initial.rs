@@ -4,7 +4,7 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
 use crate::init::Init;
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, codes};
 use plcc_syntax::ast;
 use rustc_hash::FxHashMap;
@@ -45,19 +45,27 @@ impl<'a> Cx<'a> {
                 );
                 Init::Default
             }
-            Some(ast::Init { kind: ast::InitKind::Expr(e), .. }) if self.is_reference(ty) => {
-                let refers_to = Checker::constant(self, owner).initial_reference(e, ty, section);
-                self.defs.vars[var].refers_to = refers_to.map(Box::new);
-                Init::Default
-            }
-            Some(init) => self.initial(init, ty, owner),
+            Some(init) => match self.reference_in(init, ty) {
+                Some(e) => {
+                    let refers_to = Checker::constant(self, owner).initial_reference(e, ty, section);
+                    self.defs.vars[var].refers_to = refers_to.map(Box::new);
+                    Init::Default
+                }
+                None => self.initial(init, ty, owner),
+            },
             None => from_type,
         };
         self.var_slots[var].init = State::Done(());
     }
 
-    fn is_reference(&self, ty: TypeId) -> bool {
-        matches!(self.defs.types.get(ty), Type::Ref { .. })
+    /// To what an initialiser lets a variable of a reference type refer, as written; `REF=` belongs to REFERENCE TO.
+    fn reference_in(&self, init: &'a ast::Init, ty: TypeId) -> Option<&'a ast::Expr> {
+        let Type::Ref { kind, .. } = *self.defs.types.get(ty) else { return None };
+        match &init.kind {
+            ast::InitKind::Expr(e) => Some(e),
+            ast::InitKind::Reference(e) if kind == RefKind::ReferenceTo => Some(e),
+            _ => None,
+        }
     }
 
     /// Initial values of all variables.
@@ -101,6 +109,7 @@ impl<'a> Cx<'a> {
     fn wrong_form(&mut self, init: &ast::Init, ty: TypeId) {
         let name = self.type_name(ty);
         let help = match self.defs.types.get(ty) {
+            _ if matches!(init.kind, ast::InitKind::Reference(_)) => "REF= belongs to a REFERENCE TO; write :=",
             Type::Array { .. } => "an array is initialised with a list: [1, 2, 3(0)]",
             Type::Struct(_) | Type::Instance(_) => "components are initialised by name: (a := 1, b := 2)",
             _ => "write one value",
@@ -120,7 +129,7 @@ impl<'a> Cx<'a> {
         let parts = match &init.kind {
             ast::InitKind::Struct(parts) => parts,
             ast::InitKind::Expr(e) => return Checker::constant(self, scope).const_init(e, ty),
-            ast::InitKind::Array { .. } => {
+            ast::InitKind::Array { .. } | ast::InitKind::Reference(_) => {
                 self.wrong_form(init, ty);
                 return Init::Default;
             }

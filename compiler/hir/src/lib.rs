@@ -58,7 +58,7 @@ pub use cx::{Unit, elem_of, similar, type_name};
 pub use cycles::calls_of;
 pub use defs::*;
 pub use init::Init;
-pub use types::{Type, TypeId, Types};
+pub use types::{RefKind, Type, TypeId, Types};
 
 use plcc_diag::Diagnostics;
 
@@ -93,6 +93,9 @@ pub fn check(units: &[Unit], selection: &Selection, diags: &mut Diagnostics) -> 
     if !cx.half_read.is_empty() && !doubtful.is_empty() {
         cx.codesys_only = 0;
         cx.diags.retain(|d| !doubtful.touches(d.primary.span));
+    }
+    if !cx.half_read.is_empty() {
+        doubt::find_unnamed(units, &mut cx.diags);
     }
     diags.append(cx.diags);
     Checked { defs: cx.defs, app, codesys_only: cx.codesys_only }

@@ -39,6 +39,7 @@ pub(crate) fn run(cx: &mut Cx, units: &[Unit]) {
 /// Which variables all bodies read and write.
 #[derive(Default)]
 struct Uses {
+    read: FxHashSet<VarId>,
     written: FxHashSet<VarId>,
 }
 
@@ -52,13 +53,11 @@ impl Uses {
 
 impl Visitor for Uses {
     fn place(&mut self, place: &Place, how: Use) {
-        if how == Use::Read {
-            return;
-        }
-        // Whatever is called, referred to or connected may be written there.
-        if let Root::Var(var) = place.root {
-            self.written.insert(var);
-        }
+        let Root::Var(var) = place.root else { return };
+        // Whatever is called, referred to or connected may be written there; behind a reference another variable is.
+        let followed = place.steps.iter().any(|step| matches!(step, Step::Deref));
+        let uses = if how == Use::Read || followed { &mut self.read } else { &mut self.written };
+        uses.insert(var);
     }
 
     fn call(&mut self, call: &Call) {
@@ -98,7 +97,10 @@ impl Lint<'_, '_> {
                 warn(codes::UNUSED_VARIABLE, format!("`{name}` is never used"))
                     .map(|d| d.help("remove the declaration, or write what it was meant for"))
             }
-            Section::Local | Section::Temp if !written && self.needs_a_writer(id, var) => {
+            // What only SIZEOF and its like name is not read.
+            Section::Local | Section::Temp
+                if !written && self.uses.read.contains(&id) && self.needs_a_writer(id, var) =>
+            {
                 warn(codes::NEVER_WRITTEN, format!("`{name}` is read, but nothing ever writes it"))
                     .map(|d| d.help("assign it, declare it CONSTANT or VAR_INPUT, or give it an address (AT %I..)"))
             }

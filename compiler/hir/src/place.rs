@@ -5,7 +5,7 @@ use crate::collect::charts;
 use crate::cx::*;
 use crate::defs::*;
 use crate::expr::*;
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
@@ -64,7 +64,8 @@ impl<'a> Checker<'_, 'a> {
         });
         let globals = self.cx.defs.globals.iter().map(|v| self.cx.defs.vars[*v].name.as_str());
         let values = self.cx.defs.enums.iter().flat_map(|e| e.values.iter().map(|(n, _, _)| n.as_str()));
-        locals.unwrap_or_default().into_iter().chain(globals).chain(values).collect()
+        let words = ["TRUE", "FALSE", "NULL"];
+        locals.unwrap_or_default().into_iter().chain(globals).chain(values).chain(words).collect()
     }
 
     /// Reports a name that means nothing, once per POU.
@@ -74,8 +75,10 @@ impl<'a> Checker<'_, 'a> {
         }
         let hint = similar(&name.text, self.visible_names().into_iter());
         let callable = plcc_stdlib::funcs::find(&fold(&name.text)).is_some();
+        let hint = hint.filter(|_| foreign_word(&name.text).is_none());
         let help = match hint {
             Some(near) => format!("did you mean `{near}`?"),
+            None if let Some(help) = foreign_word(&name.text) => help.into(),
             None if callable => format!("`{}` is a standard function; call it with ( )", name.text),
             None => "declare it in a VAR section".into(),
         };
@@ -84,8 +87,14 @@ impl<'a> Checker<'_, 'a> {
         );
     }
 
-    /// A path to a variable or a part of one. Reports what is none.
+    /// A path to a variable or a part of one; a REFERENCE TO is followed. Reports what is none.
     pub fn place(&mut self, e: &'a ast::Expr) -> Option<Place> {
+        let place = self.place_itself(e)?;
+        Some(self.followed(place))
+    }
+
+    /// As [`Self::place`], but a REFERENCE TO is the variable that holds the reference.
+    pub fn place_itself(&mut self, e: &'a ast::Expr) -> Option<Place> {
         match &e.kind {
             ast::ExprKind::Name(name) => self.var_place(name),
             ast::ExprKind::Member(base, name) => {
@@ -101,20 +110,44 @@ impl<'a> Checker<'_, 'a> {
                 self.part(base, part, e.span)
             }
             ast::ExprKind::Deref(base) if is_place(base) => {
-                let base = self.place(base)?;
+                let base = self.place_itself(base)?;
                 self.deref(base, e.span)
             }
             ast::ExprKind::Deref(base) => self.deref_value(base, e.span),
             ast::ExprKind::Address(text) => self.direct_address(text, e.span),
             ast::ExprKind::Error => None,
+            ast::ExprKind::Call(call) if self.gives_reference(&call.callee) => {
+                match self.call_itself(call, e.span, None) {
+                    Operand::Value { expr, .. } => self.followed_root(expr),
+                    _ => None,
+                }
+            }
             _ => {
-                self.report(
-                    Diagnostic::new(codes::NOT_A_VARIABLE, e.span, "a variable is needed here")
-                        .help("this is an expression; assign it to a variable first"),
-                );
+                let help = self.no_place_help(e);
+                self.report(Diagnostic::new(codes::NOT_A_VARIABLE, e.span, "a variable is needed here").help(help));
                 None
             }
         }
+    }
+
+    /// What to write for an expression that is no variable.
+    fn no_place_help(&mut self, e: &ast::Expr) -> String {
+        if let ast::ExprKind::Call(call) = &e.kind
+            && let ast::ExprKind::Name(name) = &call.callee.kind
+            && let Found::Var(var) = self.lookup(name)
+        {
+            let ty = self.type_of_var(var);
+            match self.cx.defs.types.get(ty) {
+                Type::Array { .. } | Type::AnyArray { .. } => {
+                    return format!("an element of an array is written `{}[...]`", name.text);
+                }
+                Type::Instance(_) => {
+                    return format!("call the instance as a statement, then use its outputs: `{}.output`", name.text);
+                }
+                _ => {}
+            }
+        }
+        "this is an expression; assign it to a variable first".into()
     }
 
     fn var_place(&mut self, name: &'a ast::Name) -> Option<Place> {
@@ -137,6 +170,8 @@ impl<'a> Checker<'_, 'a> {
                 None
             }
             Found::Reported => None,
+            // Told where it was called.
+            Found::Pou(_) if !self.cx.first_report(self.scope, &format!("pou {}", fold(&name.text))) => None,
             found => {
                 let what = match found {
                     Found::Action(_) => "an action",
@@ -154,8 +189,12 @@ impl<'a> Checker<'_, 'a> {
                         Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::FunctionBlock => {
                             format!("declare an instance of it: `inst : {};`", name.text)
                         }
+                        Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::Program => {
+                            "programs share variables as VAR_GLOBAL; a FUNCTION_BLOCK shows its outputs".into()
+                        }
                         Found::Pou(_) => format!("call it: `{}(...)`", name.text),
                         Found::Action(_) => format!("call it: `{}();`", name.text),
+                        Found::Type => format!("declare a variable of it: `x : {};`", name.text),
                         _ => "a variable is needed here".into(),
                     }),
                 );
@@ -271,10 +310,16 @@ impl<'a> Checker<'_, 'a> {
             }
             _ => {
                 let ty = self.cx.type_name(base.ty);
+                let help = match self.cx.defs.types.get(base.ty) {
+                    Type::Array { .. } | Type::AnyArray { .. } => {
+                        format!("an element has components: `{}[...].{}`", self.place_text(&base), name.text)
+                    }
+                    _ => "structures, unions and instances of function blocks have components".into(),
+                };
                 self.report(
                     Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, format!("{ty} has no component `{}`", name.text))
                         .also(base.span, format!("this is {ty}"))
-                        .help("structures, unions and instances of function blocks have components"),
+                        .help(help),
                 );
                 None
             }
@@ -324,7 +369,7 @@ impl<'a> Checker<'_, 'a> {
             self.report(
                 Diagnostic::new(codes::WRONG_SUBSCRIPTS, span, message)
                     .also(base.span, format!("this is {ty}"))
-                    .help("write one subscript per dimension, separated by commas"),
+                    .help("write one subscript per dimension, separated by commas in one pair of brackets: `a[1, 2]`"),
             );
             return None;
         }
@@ -484,7 +529,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     fn deref(&mut self, mut base: Place, span: Span) -> Option<Place> {
-        let Type::Ref { target, .. } = *self.cx.defs.types.get(base.ty) else {
+        let Type::Ref { kind, target } = *self.cx.defs.types.get(base.ty) else {
             let ty = self.cx.type_name(base.ty);
             self.report(
                 Diagnostic::new(codes::NOT_A_REFERENCE, span, format!("{ty} cannot be followed with ^"))
@@ -492,6 +537,13 @@ impl<'a> Checker<'_, 'a> {
             );
             return None;
         };
+        if kind == RefKind::ReferenceTo {
+            self.report(
+                Diagnostic::new(codes::NOT_A_REFERENCE, span, "a REFERENCE TO is not followed with ^")
+                    .help("remove the ^: its name is the variable that it refers to"),
+            );
+            return None;
+        }
         if target == Types::ERROR {
             return None;
         }
@@ -573,13 +625,15 @@ impl<'a> Checker<'_, 'a> {
                     }
                 }
                 Step::Character { .. } => text.push_str("[...]"),
-                Step::Deref => {
-                    text.push('^');
-                    match self.cx.defs.types.get(ty) {
-                        Type::Ref { target, .. } => ty = *target,
-                        _ => return text,
+                Step::Deref => match self.cx.defs.types.get(ty) {
+                    Type::Ref { kind, target } => {
+                        if *kind != RefKind::ReferenceTo {
+                            text.push('^');
+                        }
+                        ty = *target;
                     }
-                }
+                    _ => return text,
+                },
                 Step::Bit(n) => text = format!("{text}.{n}"),
                 Step::Part(elem, n) => text = format!("{text}.%{}{n}", &elem.name()[..1]),
             }
@@ -606,6 +660,22 @@ impl<'a> Checker<'_, 'a> {
 fn is_place(e: &ast::Expr) -> bool {
     use ast::ExprKind::*;
     matches!(e.kind, Name(_) | Member(..) | Index(..) | Part(..) | Deref(_) | Address(_) | Error)
+}
+
+/// What IEC 61131-3 has for a word of another language.
+fn foreign_word(word: &str) -> Option<&'static str> {
+    Some(match word.to_ascii_uppercase().as_str() {
+        "BREAK" => "a branch of a CASE ends before the next value; EXIT leaves a loop",
+        "DEFAULT" | "OTHERS" | "OTHERWISE" => "all other values of a CASE stand behind ELSE, without `:`",
+        "NIL" | "NULLPTR" | "NONE" => "a reference to nothing is NULL",
+        "THIS" | "SELF" => "inside a POU its variables are named alone",
+        word => {
+            let digits = word.strip_prefix("TIME").or(word.strip_prefix('T'))?;
+            let unit = digits.trim_start_matches(|c: char| c.is_ascii_digit());
+            let duration = unit.len() < digits.len() && matches!(unit, "D" | "H" | "M" | "S" | "MS" | "US" | "NS");
+            return duration.then_some("a duration is written with `#`: `T#5s`");
+        }
+    })
 }
 
 /// Names as a message lists them: the first dozen.

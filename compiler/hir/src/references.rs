@@ -1,5 +1,5 @@
 //! References and pointers: what they are taken of, what converts to what, arithmetic in bytes, comparison
-//! (semantics.md \[R1\] to \[R3\]); and what lies in the addressable part because of them.
+//! (semantics.md \[R1\] to \[R3\]); REFERENCE TO, which is followed wherever it is named (\[R5\]); and what lies in the addressable part because of them.
 //!
 //! A reference is a 32-bit offset, in the typed form a UDINT under another type.
 
@@ -7,7 +7,7 @@ use crate::body::*;
 use crate::defs::*;
 use crate::expr::*;
 use crate::operators::BOOL;
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use crate::visit::{self, Visitor};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
@@ -27,13 +27,19 @@ impl<'a> Checker<'_, 'a> {
             return Operand::Error;
         };
         let Some(place) = self.place(e) else { return Operand::Error };
+        let kind = if pointer { RefKind::PointerTo } else { RefKind::RefTo };
+        self.reference_of(kind, place, span)
+    }
+
+    /// A reference to a place, of a kind.
+    fn reference_of(&mut self, kind: RefKind, place: Place, span: Span) -> Operand {
         if !self.addressable(&place, "a reference") {
             return Operand::Error;
         }
         match &place.root {
             Root::Var(var) => {
                 let v = &self.cx.defs.vars[*var];
-                if v.constant && !pointer {
+                if v.constant && kind != RefKind::PointerTo {
                     let (name, declared) = (v.name.clone(), v.span);
                     self.report(
                         Diagnostic::new(codes::NO_REFERENCE, span, format!("`{name}` is a CONSTANT"))
@@ -64,12 +70,163 @@ impl<'a> Checker<'_, 'a> {
             }
             _ => place.ty,
         };
-        let ty = self.cx.defs.types.intern(Type::Ref { pointer, target });
+        let ty = self.cx.defs.types.intern(Type::Ref { kind, target });
         Operand::value(ExprKind::RefOf(place), ty, span)
+    }
+
+    /// Whether values of a type are followed wherever they are named.
+    pub fn is_reference_to(&self, ty: TypeId) -> bool {
+        matches!(self.cx.defs.types.get(ty), Type::Ref { kind: RefKind::ReferenceTo, .. })
+    }
+
+    /// A place, or what it refers to if it is a REFERENCE TO.
+    pub fn followed(&self, mut place: Place) -> Place {
+        if let Type::Ref { kind: RefKind::ReferenceTo, target } = *self.cx.defs.types.get(place.ty) {
+            place.steps.push(Step::Deref);
+            place.ty = target;
+        }
+        place
+    }
+
+    /// A value, or that of what it refers to if it is a REFERENCE TO (the result of a function).
+    pub fn followed_value(&mut self, operand: Operand) -> Operand {
+        match operand {
+            Operand::Value { expr, ty } if self.is_reference_to(ty) => match self.followed_root(expr) {
+                Some(place) => self.read_place(place),
+                None => Operand::Error,
+            },
+            operand => operand,
+        }
+    }
+
+    /// The place to which a value refers; `None` if that was reported.
+    pub fn followed_root(&self, reference: Expr) -> Option<Place> {
+        let Type::Ref { target, .. } = *self.cx.defs.types.get(reference.ty) else { return None };
+        let span = reference.span;
+        let place = Place { root: Root::Deref(Box::new(reference)), steps: Vec::new(), ty: target, span };
+        (target != Types::ERROR).then_some(place)
+    }
+
+    /// Whether a call of this gives a REFERENCE TO: a function of the user's.
+    pub fn gives_reference(&mut self, callee: &ast::Expr) -> bool {
+        let ast::ExprKind::Name(name) = &callee.kind else { return false };
+        let pou = self.cx.pous.get(&crate::cx::fold(&name.text)).copied();
+        match pou.and_then(|pou| self.cx.defs.pous[pou].result) {
+            Some(result) => {
+                let ty = self.type_of_var(result);
+                self.is_reference_to(ty)
+            }
+            None => false,
+        }
+    }
+
+    /// What binds a REFERENCE TO of type `want`: the variable `e`, what another one refers to, or nothing (NULL, 0).
+    pub fn reference_value(&mut self, e: &'a ast::Expr, want: TypeId) -> Expr {
+        let Type::Ref { kind, target } = *self.cx.defs.types.get(want) else { return error_expr(e.span) };
+        let nothing = |span| Expr { kind: ExprKind::Const(0), ty: want, span };
+        let place = match &e.kind {
+            ast::ExprKind::Literal(_) => match self.operand(e, None) {
+                Operand::Int(0) => return nothing(e.span),
+                Operand::Error => return error_expr(e.span),
+                Operand::Value { ty, .. } if matches!(self.cx.defs.types.get(ty), Type::Null) => {
+                    return nothing(e.span);
+                }
+                _ => {
+                    self.report(
+                        Diagnostic::new(codes::NOT_A_VARIABLE, e.span, "a REFERENCE TO refers to a variable")
+                            .help("name a variable of its type; assign the value to that first"),
+                    );
+                    return error_expr(e.span);
+                }
+            },
+            _ => self.place_itself(e),
+        };
+        let Some(mut place) = place else { return error_expr(e.span) };
+        let found = place.ty;
+        // What another reference refers to: a copy of that reference, though it be NULL.
+        let copied = match (&place.root, place.steps.last()) {
+            _ if self.is_reference_to(found) => true,
+            (_, Some(Step::Deref)) => {
+                place.steps.pop();
+                true
+            }
+            (Root::Deref(_), None) => true,
+            _ => false,
+        };
+        let have = match *self.cx.defs.types.get(found) {
+            Type::Ref { kind: RefKind::ReferenceTo, target } => target,
+            _ => found,
+        };
+        if have == Types::ERROR || target == Types::ERROR {
+            return error_expr(e.span);
+        }
+        if have != target && !self.may_stand_for(target, have, e.span) {
+            return error_expr(e.span);
+        }
+        if !copied {
+            return match self.reference_of(kind, place, e.span) {
+                Operand::Value { expr, .. } => retype(expr, want),
+                _ => error_expr(e.span),
+            };
+        }
+        let held = match place.root {
+            Root::Deref(reference) if place.steps.is_empty() => *reference,
+            root => Expr { kind: ExprKind::Read(Place { root, ty: want, ..place }), ty: want, span: e.span },
+        };
+        retype(held, want)
+    }
+
+    /// Whether a variable may stand where one of another type is referred to, as for a VAR_IN_OUT: a longer string,
+    /// an array with other bounds of equal length, each with its warning. Other types are reported.
+    fn may_stand_for(&mut self, target: TypeId, have: TypeId, span: Span) -> bool {
+        let (want, found) = (self.cx.type_name(target), self.cx.type_name(have));
+        let message = format!("this refers to {want}, the variable is {found}");
+        let mismatch = Diagnostic::new(codes::TYPE_MISMATCH, span, message)
+            .help("a reference is the variable itself: both must have the same type");
+        if self.similar_memory(target, have) {
+            return self.codesys_only(span, codes::LAX_CONVERSION, mismatch);
+        }
+        self.report(mismatch);
+        false
+    }
+
+    /// `__ISVALIDREF(r)`: whether a REFERENCE TO refers to something.
+    pub fn is_valid_reference(&mut self, call: &'a ast::Call, span: Span) -> Operand {
+        let place = match call.args.as_slice() {
+            [ast::Arg { kind: ast::ArgKind::Positional(e), .. }] => match self.place_itself(e) {
+                Some(place) => place,
+                None => return Operand::Error,
+            },
+            _ => {
+                self.report(
+                    Diagnostic::new(codes::TOO_MANY_ARGUMENTS, span, "__ISVALIDREF takes one variable")
+                        .help("write __ISVALIDREF(r)"),
+                );
+                return Operand::Error;
+            }
+        };
+        if !self.is_reference_to(place.ty) {
+            let name = self.cx.type_name(place.ty);
+            self.report(
+                Diagnostic::new(
+                    codes::NOT_A_REFERENCE,
+                    place.span,
+                    format!("__ISVALIDREF takes a REFERENCE TO, {name} is none"),
+                )
+                .help("a REF_TO or a pointer is compared with NULL: `r <> NULL`"),
+            );
+            return Operand::Error;
+        }
+        let at = place.span;
+        let ty = Types::elem(OFFSET);
+        let held = Expr { ty: place.ty, kind: ExprKind::Read(place), span: at };
+        let null = Expr { kind: ExprKind::Const(0), ty, span: at };
+        Operand::value(ExprKind::Op(Op::Ne, OFFSET, vec![retype(held, ty), null]), BOOL(), span)
     }
 
     /// To what a reference in `section` refers initially; `None` for NULL. Messages are given.
     pub fn initial_reference(&mut self, e: &'a ast::Expr, ty: TypeId, section: Section) -> Option<Place> {
+        let bound = self.is_reference_to(ty);
         let mut expr = self.value(e, ty);
         while let ExprKind::Retype(inner) | ExprKind::Convert(_, _, inner) = expr.kind {
             expr = *inner;
@@ -82,8 +239,12 @@ impl<'a> Checker<'_, 'a> {
         };
         self.report(
             Diagnostic::new(codes::NOT_CONSTANT, place, "this is known only at run time, a constant is needed").help(
-                "a reference is initialised with REF or ADR of a global variable or of one of the same POU, with NULL, \
-                 or not at all",
+                if bound {
+                    "a REFERENCE TO is initialised with a global variable or one of the same POU, or not at all"
+                } else {
+                    "a reference is initialised with REF or ADR of a global variable or of one of the same POU, with \
+                     NULL, or not at all"
+                },
             ),
         );
         None
@@ -107,15 +268,20 @@ impl<'a> Checker<'_, 'a> {
     /// Whether a value of a reference type may stand for another type, or another for it; `None` if neither is a
     /// reference. What converts is the same number under another type.
     pub fn coerce_reference(&mut self, expr: &Expr, from: TypeId, to: TypeId, span: Span) -> Option<Expr> {
+        // One that is followed binds a variable, it takes no value: see `reference_value`.
+        if self.is_reference_to(from) || self.is_reference_to(to) {
+            return None;
+        }
         let types = &self.cx.defs.types;
+        let pointer = |kind| kind == RefKind::PointerTo;
         let (pointer, elem) = match (types.get(from).clone(), types.get(to).clone()) {
             (Type::Null, Type::Ref { .. }) => return Some(retype(expr.clone(), to)),
             (Type::Ref { target: a, .. }, Type::Ref { target: b, .. }) if a == b => {
                 return Some(retype(expr.clone(), to));
             }
-            (Type::Ref { pointer: a, .. }, Type::Ref { pointer: b, .. }) => (a && b, OFFSET),
-            (Type::Ref { pointer, .. }, _) => (pointer, self.elem_of(to)?),
-            (_, Type::Ref { pointer, .. }) => (pointer, self.elem_of(from)?),
+            (Type::Ref { kind: a, .. }, Type::Ref { kind: b, .. }) => (pointer(a) && pointer(b), OFFSET),
+            (Type::Ref { kind, .. }, _) => (pointer(kind), self.elem_of(to)?),
+            (_, Type::Ref { kind, .. }) => (pointer(kind), self.elem_of(from)?),
             _ => return None,
         };
         if !holds_address(elem) {
@@ -149,7 +315,7 @@ impl<'a> Checker<'_, 'a> {
     ) -> Option<Operand> {
         let (x, y) = (self.static_type(a), self.static_type(b));
         let reference = |ty: Option<TypeId>| match ty.map(|ty| self.cx.defs.types.get(ty)) {
-            Some(Type::Ref { pointer, .. }) => Some(*pointer),
+            Some(Type::Ref { kind, .. }) => Some(*kind == RefKind::PointerTo),
             _ => None,
         };
         let (left, right) = (reference(x), reference(y));
@@ -238,13 +404,14 @@ impl<'a> Checker<'_, 'a> {
         let of = |operand: &Operand| self.static_type(operand).map(|ty| types.get(ty).clone());
         let (x, y) = (of(a), of(b));
         let equality = matches!(op, Op::Eq | Op::Ne);
+        let pointer = |kind| kind == RefKind::PointerTo;
         let lax = match (&x, &y) {
             (Some(Type::Null), Some(Type::Null)) => false,
             (Some(Type::Ref { .. }), Some(Type::Null)) | (Some(Type::Null), Some(Type::Ref { .. })) => !equality,
-            (Some(Type::Ref { pointer: p, target: s }), Some(Type::Ref { pointer: q, target: t })) => {
-                !(*p && *q) && (s != t || !equality)
+            (Some(Type::Ref { kind: p, target: s }), Some(Type::Ref { kind: q, target: t })) => {
+                !(pointer(*p) && pointer(*q)) && (s != t || !equality)
             }
-            (Some(Type::Ref { pointer, .. }), _) | (_, Some(Type::Ref { pointer, .. })) => !*pointer,
+            (Some(Type::Ref { kind, .. }), _) | (_, Some(Type::Ref { kind, .. })) => !pointer(*kind),
             _ => return None,
         };
         let name = |c: &Self, o: &Operand| c.static_type(o).map_or("a number".to_string(), |ty| c.cx.type_name(ty));

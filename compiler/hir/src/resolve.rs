@@ -5,7 +5,7 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
 use crate::init::Init;
-use crate::types::{Type, TypeId, Types};
+use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
@@ -69,18 +69,27 @@ impl<'a> Cx<'a> {
                     ast::TypeExprKind::Named(name) => self.resolve_named(name, true).ty,
                     _ => self.resolve_type(target, scope, name).ty,
                 };
-                if *kind == ast::RefKind::ReferenceTo {
+                if *kind == RefKind::ReferenceTo && !self.codesys(te.span) {
+                    self.codesys_only += 1;
                     self.push(
-                        Diagnostic::new(codes::NOT_YET, te.span, "REFERENCE TO is not implemented")
-                            .help("use REF_TO with REF() and ^, or VAR_IN_OUT"),
+                        Diagnostic::new(codes::REFERENCE_TO, te.span, "REFERENCE TO is a form of CODESYS")
+                            .help("the standard's form is REF_TO: `r := REF(x);` binds it, `r^` is the variable there"),
                     );
                     return Resolved::error();
                 }
-                let pointer = *kind == ast::RefKind::PointerTo;
-                plain(self.defs.types.intern(Type::Ref { pointer, target }))
+                self.reject_reference(target, te.span, "nothing refers to a REFERENCE TO itself");
+                plain(self.defs.types.intern(Type::Ref { kind: *kind, target }))
             }
             // The check of the body gives it the type of its value.
             ast::TypeExprKind::Inferred(_) | ast::TypeExprKind::Error => Resolved::error(),
+        }
+    }
+
+    /// What is followed wherever it is named has no place of its own: no type is made of it.
+    fn reject_reference(&mut self, part: TypeId, span: Span, message: &str) {
+        if let Type::Ref { kind: RefKind::ReferenceTo, .. } = self.defs.types.get(part) {
+            let help = "use REF_TO or POINTER TO, and follow it with ^";
+            self.push(Diagnostic::new(codes::BAD_BASE_TYPE, span, message).help(help));
         }
     }
 
@@ -175,7 +184,9 @@ impl<'a> Cx<'a> {
         scope: Option<PouId>,
         name: &str,
     ) -> Resolved {
+        let elem_span = elem.span;
         let elem = self.resolve_type(elem, scope, name);
+        self.reject_reference(elem.ty, elem_span, "an array cannot hold REFERENCE TOs");
         if dims.iter().any(|d| matches!(d, ast::Dim::Any(_))) {
             let ty = self.defs.types.intern(Type::AnyArray { dims: dims.len(), elem: elem.ty });
             return Resolved { ty, init: Init::Default };
@@ -239,6 +250,10 @@ impl<'a> Cx<'a> {
         let mut seen: FxHashMap<_, Span> = FxHashMap::default();
         for decl in decls {
             for field in &decl.names {
+                // One that lacks its name is reported, and cannot be named.
+                if field.text.is_empty() {
+                    continue;
+                }
                 if let Some(first) = seen.insert(fold(&field.text), field.span) {
                     self.push(
                         Diagnostic::new(
@@ -259,7 +274,8 @@ impl<'a> Cx<'a> {
                 fields.push(Field { name: field.text.clone(), ty: resolved.ty, init, span: field.span });
             }
         }
-        if fields.is_empty() {
+        let unnamed = || decls.iter().any(|d| d.names.iter().any(|n| n.text.is_empty()));
+        if fields.is_empty() && !unnamed() {
             self.push(
                 Diagnostic::new(codes::EMPTY_TYPE, te.span, "a structure without components")
                     .help("declare at least one component"),
@@ -281,6 +297,14 @@ impl<'a> Cx<'a> {
             None => Elem::Int,
             Some(base) => match Elem::from_name(&base.text) {
                 Some(elem) if elem.is_integer() || elem.is_bits() => elem,
+                None if self.pous.contains_key(&fold(&base.text)) || self.types.contains_key(&fold(&base.text)) => {
+                    let text = &base.text;
+                    self.push(
+                        Diagnostic::new(codes::BAD_INITIALISER, te.span, format!("`{text}` takes no values here"))
+                            .help(format!("initial values stand behind `:=`: `x : {text} := (a := 1)`")),
+                    );
+                    return Resolved::error();
+                }
                 _ => {
                     self.push(
                         Diagnostic::new(

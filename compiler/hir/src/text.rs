@@ -35,7 +35,7 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// Of a STRING or WSTRING: whether it is a WSTRING.
-    fn string_kind(&self, ty: TypeId) -> Option<bool> {
+    pub fn string_kind(&self, ty: TypeId) -> Option<bool> {
         match self.cx.defs.types.get(ty) {
             Ty::String { wide, .. } | Ty::AnyString { wide } => Some(*wide),
             _ => None,

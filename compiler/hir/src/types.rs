@@ -2,6 +2,7 @@
 
 use crate::{EnumId, PouId, StructId};
 use plcc_stdlib::elem::Elem;
+pub use plcc_syntax::ast::RefKind;
 use rustc_hash::FxHashMap;
 
 index_vec::define_index_type! {
@@ -63,8 +64,8 @@ pub enum Type {
     Instance(PouId),
     /// A reference, 32-bit offset into the region (\[R1\]).
     Ref {
-        /// POINTER TO (with arithmetic) or REF_TO.
-        pointer: bool,
+        /// REF_TO, POINTER TO (with arithmetic) or REFERENCE TO (followed wherever it is named, \[R5\]).
+        kind: RefKind,
         /// What it points to.
         target: TypeId,
     },

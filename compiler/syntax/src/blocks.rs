@@ -12,6 +12,8 @@ mod ends;
 mod il;
 mod outside;
 
+pub(crate) use declarations::section_meant;
+
 use crate::Profile;
 use crate::lexer::Lexed;
 use crate::report::Reporter;
@@ -406,12 +408,34 @@ impl<'a, 'd> Blocks<'a, 'd> {
         if !self.stack.is_empty() {
             self.close_above(0, self.peek(0));
         }
-        let kind = if block == Construct::Configuration { Tok::Configuration } else { self.peek(0).kind };
+        let t = self.peek(0);
+        let kind = if block == Construct::Configuration { Tok::Configuration } else { t.kind };
         self.begin_item();
+        if self.function_block_in_two_words() {
+            self.at += 1;
+            self.open(Construct::FunctionBlock, Tok::FunctionBlock);
+            return self.pou_head(Construct::FunctionBlock);
+        }
+        if block.is_pou() && self.peek(1).kind == t.kind && !self.peek(1).first {
+            let message = format!("{} stands twice", kind.describe());
+            self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove one of them"));
+            self.at += 1;
+        }
         self.open(block, kind);
         if block.is_pou() {
             self.pou_head(block);
         }
+    }
+
+    /// `FUNCTION BLOCK Motor`: reported.
+    fn function_block_in_two_words(&mut self) -> bool {
+        let (t, next) = (self.peek(0), self.peek(1));
+        if t.kind != Tok::Function || !self.is(1, "BLOCK") || self.peek(2).kind != Tok::Id || self.peek(2).first {
+            return false;
+        }
+        let message = "FUNCTION_BLOCK is one word";
+        self.report.push(self.report.at(codes::MISSPELLED, t.start, next.end, message).help("write `FUNCTION_BLOCK`"));
+        true
     }
 
     fn begin_item(&mut self) {

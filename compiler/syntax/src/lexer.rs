@@ -96,6 +96,8 @@ impl Lexer<'_, '_, '_> {
             b'(' if self.byte(1) == b'*' => self.block_comment(b'(', b')'),
             b'/' if self.byte(1) == b'*' => self.block_comment(b'/', b'/'),
             b'/' if self.byte(1) == b'/' => self.at = self.line_end(),
+            b'#' if self.first => self.foreign_comment(1),
+            b'-' if self.first && self.byte(1) == b'-' && self.between_statements() => self.foreign_comment(2),
             b'{' => self.pragma(),
             b'\'' | b'"' => self.string(),
             b'%' => self.address(),
@@ -292,6 +294,7 @@ impl Lexer<'_, '_, '_> {
             (b'=', b'>') => (Tok::Arrow, 2),
             (b'=', b'=') => return self.foreign(Tok::Eq, 2, "="),
             (b'=', b'<') => return self.foreign(Tok::Rel, 2, "<="),
+            (b'=', _) if self.behind_ref() => return self.bind(),
             (b'=', _) => (Tok::Eq, 1),
             (b'<', b'=' | b'>') | (b'>', b'=') => (Tok::Rel, 2),
             (b'<' | b'>', _) => (Tok::Rel, 1),
@@ -311,6 +314,24 @@ impl Lexer<'_, '_, '_> {
         self.push(kind, length);
     }
 
+    /// Whether what stands before goes on with no expression.
+    fn between_statements(&self) -> bool {
+        let Some(last) = self.out.tokens.last() else { return true };
+        last.kind == Tok::Semi || last.kind.is_reserved() && !matches!(last.kind, Tok::Op | Tok::Not)
+    }
+
+    /// A line that begins as a comment does in another language.
+    fn foreign_comment(&mut self, length: usize) {
+        let (start, end) = (self.at, self.at + length);
+        let message = format!("`{}` begins no comment", &self.text[start..end]);
+        self.report.push(
+            self.report
+                .at(codes::FOREIGN_OPERATOR, start as u32, end as u32, message)
+                .help("write `//` for the rest of a line, `(* ... *)` for any text"),
+        );
+        self.at = self.line_end();
+    }
+
     /// A sign of another language, taken for the one that is meant.
     fn foreign(&mut self, kind: Tok, length: usize, meant: &str) {
         let (start, end) = (self.at as u32, (self.at + length) as u32);
@@ -323,19 +344,39 @@ impl Lexer<'_, '_, '_> {
         self.push(kind, length);
     }
 
-    /// `:`, or one of the ways to spoil `:=`, none of which can be anything else.
+    /// Whether the `=` here makes `REF=` of the word before it on the line: `REF` directly behind an operand or a type,
+    /// where no other name could stand.
+    fn behind_ref(&self) -> bool {
+        use Tok::*;
+        let [.., before, word] = self.out.tokens.as_slice() else { return false };
+        let text = &self.text[word.start as usize..word.end as usize];
+        word.kind == Id
+            && !self.first
+            && text.eq_ignore_ascii_case("REF")
+            && matches!(before.kind, Id | RBracket | RParen | Caret)
+    }
+
+    /// `REF=`, whose `=` is here.
+    fn bind(&mut self) {
+        self.at += 1;
+        if let Some(word) = self.out.tokens.last_mut() {
+            word.kind = Tok::Bind;
+            word.end = self.at as u32;
+        }
+        self.first = false;
+    }
+
+    /// `:`, or `:=` with a blank inside, which can be nothing else.
     fn colon(&mut self) {
         let rest = self.bytes[self.at + 1..].iter();
         let gap = rest.take_while(|b| matches!(b, b' ' | b'\t')).count();
         let (start, after) = (self.at, self.at + 1 + gap);
         let assign = match (self.bytes.get(after), self.bytes.get(after + 1)) {
-            (Some(b'='), next) if next != Some(&b'>') && gap > 0 => {
-                Some((after + 1, "`:=` is one sign, without a blank between `:` and `=`"))
-            }
-            (Some(b':'), Some(b'=')) => Some((after + 2, "one `:` too many before `:=`")),
+            (Some(b'='), next) if next != Some(&b'>') && gap > 0 => Some(after + 1),
             _ => None,
         };
-        let Some((end, message)) = assign else { return self.push(Tok::Colon, 1) };
+        let message = "`:=` is one sign, without a blank between `:` and `=`";
+        let Some(end) = assign else { return self.push(Tok::Colon, 1) };
         self.report.push(self.report.at(codes::SPLIT_ASSIGN, start as u32, end as u32, message).help("write `:=`"));
         self.push(Tok::Assign, end - start);
     }
@@ -361,6 +402,9 @@ impl Lexer<'_, '_, '_> {
                 self.report.at(codes::BAD_CHARACTER, start, end, format!("the character {shown} has no meaning here"));
             if c == '\0' {
                 message = message.help("this does not look like a text file");
+            }
+            if c == '?' {
+                message = message.help("a choice is written with IF, or as SEL(condition, if_false, if_true)");
             }
             self.report.push(message);
             // A control character was not written by anybody: what stands around it is still what it seems to be.

@@ -46,7 +46,8 @@ pub fn parse_file(file: FileId, text: &str, profile: Profile, diags: &mut Diagno
             items.push(*item);
         }
     }
-    ast::File { items, pragmas: lexed.pragmas, doubtful: report.doubtful(text, &lexed.tokens), places: Vec::new() }
+    let (doubtful, unnamed) = report.doubtful(text, &lexed.tokens);
+    ast::File { items, pragmas: lexed.pragmas, doubtful, unnamed, places: Vec::new() }
 }
 
 /// Reads a PLCopen TC6 XML file. Mistakes are reported and leave error nodes.

@@ -111,6 +111,14 @@ impl Recovery<'_, '_> {
     /// Changes the tokens so that the next round gets further; `false` if the item cannot be saved.
     fn mend(&mut self, refused: &Refused) -> bool {
         let segment = self.segment(refused.at);
+        if let Some(t) = self.tokens.get_mut(refused.at)
+            && t.kind != Tok::Id
+            && refused.wants("name")
+            && self.report.is_taken_for_name(t.text(self.text))
+        {
+            t.kind = Tok::Id;
+            return true;
+        }
         let place = self.place(segment.start);
         // What the lexer has told needs no second message.
         let told = self.kind(refused.at) == Tok::Bad || self.kind(refused.at.wrapping_sub(1)) == Tok::Bad;

@@ -120,6 +120,11 @@ fn statements() {
         body("r ?= s; fb(); p^.x := 1; lbl: JMP lbl;"),
         ["attempt r ?= s", "call fb()", "assign p^.x := 1", "label lbl:", "JMP lbl"]
     );
+    // `REF=` only where no name could stand: otherwise REF is one.
+    assert_eq!(
+        body("r REF= s; a[1] ref = p^; x := ref=3 AND ref = 4; f(ref=1);"),
+        ["bind r REF= s", "bind a[1] REF= p^", "assign x := ((ref = 3) AND (ref = 4))", "call f((ref = 1))"]
+    );
 }
 
 #[test]
@@ -156,6 +161,7 @@ fn soft_words_are_names() {
         "r_edge",
         "pointer",
         "ref_to",
+        "ref",
         "string",
         "class",
     ] {
@@ -183,6 +189,10 @@ fn variables() {
     assert_eq!(
         vars("a : ARRAY[1..3, 0..n - 1] OF ARRAY[*] OF INT; p : POINTER TO REF_TO REFERENCE TO T;"),
         ["a : ARRAY [1..3, 0..(n - 1)] OF ARRAY [*] OF INT", "p : POINTER TO REF_TO REFERENCE TO T"]
+    );
+    assert_eq!(
+        vars("r : REFERENCE TO INT REF= x; s : REFERENCE TO ARRAY[1..2] OF STRING(9) ref = a.b;"),
+        ["r : REFERENCE TO INT REF= x", "s : REFERENCE TO ARRAY [1..2] OF STRING[9] REF= a.b"]
     );
     assert_eq!(
         vars("a : INT (1..10); b : (x, y := 5) INT; c : INT (x, y);"),

@@ -1,4 +1,5 @@
-//! Any bytes: the compiler gives messages or verified MIR, it never panics. The first byte chooses the profile.
+//! Any bytes: the compiler gives messages or verified MIR, it never panics. The last byte chooses the profile, so that a
+//! source with its line feed at the end is a seed as it is.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -6,8 +7,8 @@ use plcc_hir::Profile;
 use plcc_tests::compile::{diagnose, lower};
 
 fuzz_target!(|data: &[u8]| {
-    let Some((first, rest)) = data.split_first() else { return };
-    let profile = if first % 2 == 0 { Profile::Strict } else { Profile::Codesys };
+    let Some((last, rest)) = data.split_last() else { return };
+    let profile = if last % 2 == 0 { Profile::Strict } else { Profile::Codesys };
     // As the driver reads files: UTF-8 or, if that fails, ISO-8859-1 (semantics.md [L1]).
     let text = match std::str::from_utf8(rest) {
         Ok(text) => text.to_string(),

@@ -162,7 +162,7 @@ w.16 := TRUE;\n\
 END_PROGRAM\n\
 ```\n";
     NOT_A_REFERENCE "E0318" Error "only references are followed" "\
-`^` follows REF_TO and POINTER TO.\n\
+`^` follows REF_TO and POINTER TO; a REFERENCE TO is followed without it.\n\
 \n\
 ```st\n\
 PROGRAM Main\n\
@@ -368,6 +368,16 @@ A standard function needs all of its inputs.\n\
 PROGRAM Main\n\
 VAR x : INT; END_VAR\n\
 x := LIMIT(0, x);\n\
+END_PROGRAM\n\
+```\n";
+    REFERENCE_TO "E0338" Error "REFERENCE TO belongs to profile codesys" "\
+REFERENCE TO, which is followed wherever it is named and bound with REF=, is a form of CODESYS. The standard's reference is\n\
+REF_TO: bound with `r := REF(x)`, followed with `r^`.\n\
+\n\
+```st\n\
+PROGRAM Main\n\
+VAR x : INT; r : REFERENCE TO INT := x; END_VAR\n\
+r := 1;\n\
 END_PROGRAM\n\
 ```\n";
     NOT_YET "E0399" Error "not implemented yet" "\

@@ -85,6 +85,7 @@ impl<'a> St<'_, 'a> {
         let kind = match &stmt.kind {
             ast::StmtKind::Assign(target, value) => self.assign(target, value),
             ast::StmtKind::AssignAttempt(target, value) => self.attempt(target, value, span),
+            ast::StmtKind::Bind(target, value) => self.bind(target, value, span),
             ast::StmtKind::Expr(e) => self.expr_statement(e),
             ast::StmtKind::If { arms, otherwise } => {
                 let arms = arms.iter().map(|(cond, body)| (self.c.condition(cond), self.list(body))).collect();
@@ -207,6 +208,29 @@ impl<'a> St<'_, 'a> {
         }
         let value = crate::expr::retype(value, place.ty);
         Some(StmtKind::Assign { target: place, value })
+    }
+
+    /// `r REF= x`: what a REFERENCE TO refers to (\[R5\]).
+    fn bind(&mut self, target: &'a ast::Expr, value: &'a ast::Expr, span: Span) -> Option<StmtKind> {
+        let Some(place) = self.c.place_itself(target) else {
+            self.c.operand(value, None);
+            return None;
+        };
+        if !self.c.is_reference_to(place.ty) {
+            let name = self.c.cx.type_name(place.ty);
+            let help = match self.c.cx.defs.types.get(place.ty) {
+                Type::Ref { .. } => "write `:= REF(...)` or `:= ADR(...)`",
+                _ => "write `:=` to assign a value, or declare it as REFERENCE TO",
+            };
+            self.c.report(
+                Diagnostic::new(codes::NOT_A_REFERENCE, span, format!("REF= binds a REFERENCE TO, {name} is none"))
+                    .help(help),
+            );
+            return None;
+        }
+        let writable = self.c.check_writable(&place);
+        let value = self.c.value(value, place.ty);
+        (writable && value.ty != Types::ERROR).then_some(StmtKind::Assign { target: place, value })
     }
 
     /// The target of an assignment: a function assigns its result by its own name.

@@ -11,7 +11,7 @@ use crate::layout::Slot;
 use plcc_diag::bug;
 use plcc_hir::body::{self, Call, Callee, Expr};
 use plcc_hir::shape::repr;
-use plcc_hir::{Init, PouId, PouKind, Section, Type, TypeId, VarId};
+use plcc_hir::{Init, PouId, PouKind, Section, Type, TypeId, VarId, elem_of};
 use plcc_stdlib::prim::{PrimOp, Repr};
 use rustc_hash::FxHashMap;
 
@@ -309,6 +309,11 @@ impl FuncLower<'_, '_> {
         for (output, value) in call.outputs.iter().zip(fetched) {
             let to = self.place(&output.target);
             match value {
+                Argument::Scalar(_, value) if self.is_text(to.ty) => {
+                    let ty = self.defs.vars[output.output].ty;
+                    let Some(elem) = elem_of(self.defs, ty) else { bug!("{:?} as text", self.defs.types[ty]) };
+                    self.write_text(value, elem, &to);
+                }
                 Argument::Scalar(_, value) => self.store(&to, value),
                 Argument::Aggregate(_, from, ty) => self.copy_aggregate(&to, &Self::plain(from, ty)),
                 Argument::Text(..) => bug!("an output is fetched as a place"),

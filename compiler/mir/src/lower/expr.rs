@@ -68,7 +68,7 @@ impl FuncLower<'_, '_> {
             ExprKind::Text { op, wide, args } => self.text_value(*op, *wide, args, expr),
             ExprKind::RefOf(place) => self.address(place, Purpose::Address),
             ExprKind::Temp(temp) => {
-                let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
+                let access = self.temp(*temp);
                 self.load(&access)
             }
             ExprKind::String(_) | ExprKind::WString(_) => bug!("a string as a scalar"),
@@ -126,7 +126,7 @@ impl FuncLower<'_, '_> {
     pub fn aggregate(&mut self, expr: &Expr) -> Place {
         match &expr.kind {
             ExprKind::Read(place) => self.place(place).place,
-            ExprKind::Temp(temp) => self.temp_place(*temp),
+            ExprKind::Temp(temp) => self.temp(*temp).place,
             ExprKind::Retype(inner) => self.aggregate(inner),
             ExprKind::Call(call) => {
                 let temp = self.new_temp(expr.ty);

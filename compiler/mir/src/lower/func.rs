@@ -3,7 +3,7 @@
 //! The entry block is filled last: only then it is known which local variables the body uses, and the others need no
 //! initial value. Outputs and the result always get theirs, because callers read them.
 
-use super::place::Purpose;
+use super::place::{Access, Purpose};
 use super::{Context, init};
 use crate::build::Builder;
 use crate::ir::{Base, BlockId, Func, Place, Source};
@@ -209,14 +209,23 @@ impl<'c, 'a> FuncLower<'c, 'a> {
         }
     }
 
-    /// The place of a temporary of the body.
-    pub fn temp_place(&mut self, temp: TempId) -> Place {
-        if let Some(offset) = self.temps[temp] {
-            return Place::new(Base::Frame, offset);
-        }
-        let place = self.new_temp(self.temp_type(temp));
+    /// Where a temporary of the body lies. A string of any capacity has room for the longest one.
+    pub fn temp(&mut self, temp: TempId) -> Access {
+        let ty = self.temp_type(temp);
+        let longest = match self.defs.types[ty] {
+            Type::AnyString { wide } => Some((self.cx.longest[usize::from(wide)], if wide { 2 } else { 1 })),
+            _ => None,
+        };
+        let place = match (self.temps[temp], longest) {
+            (Some(offset), _) => Place::new(Base::Frame, offset),
+            (None, Some((capacity, unit))) => self.frame_room((u64::from(capacity) + 1) * unit, unit),
+            (None, None) => self.new_temp(ty),
+        };
         self.temps[temp] = u32::try_from(place.offset).ok();
-        place
+        let capacity = longest.map(|(capacity, _)| self.b.number(Repr::I32, u64::from(capacity)));
+        let mut access = Self::plain(place, ty);
+        access.capacity = capacity;
+        access
     }
 
     /// A new temporary in the frame.

@@ -2,14 +2,17 @@
 
 use super::place::constant;
 use plcc_hir::body::{Expr, ExprKind, Place, Root, Step};
-use plcc_hir::{Defs, Type, TypeId, Types};
+use plcc_hir::{Defs, RefKind, Type, TypeId, Types};
 use std::fmt::Write;
 
 /// The first `steps` steps of a place: `m.axis[3].speed`, `p^.next`; an index that is no constant is `..`.
 pub fn of_place(defs: &Defs, place: &Place, steps: usize) -> String {
     let (mut text, mut ty) = match &place.root {
         Root::Var(id) => (defs.vars[*id].name.to_string(), Some(defs.vars[*id].ty)),
-        Root::Deref(reference) => (format!("{}^", of_expr(defs, reference)), target(defs, Some(reference.ty))),
+        Root::Deref(reference) => {
+            let sign = if is_followed(defs, Some(reference.ty)) { "" } else { "^" };
+            (format!("{}{sign}", of_expr(defs, reference)), target(defs, Some(reference.ty)))
+        }
         Root::Temp(temp) => (format!("${}", temp.raw()), None),
         Root::Address(address) => (format!("%{:?}{}", address.area, address.byte), None),
     };
@@ -33,6 +36,11 @@ fn target(defs: &Defs, ty: Option<TypeId>) -> Option<TypeId> {
         Some(Type::Ref { target, .. }) => Some(*target),
         _ => None,
     }
+}
+
+/// Whether it is a REFERENCE TO, which has no `^` in the source.
+fn is_followed(defs: &Defs, ty: Option<TypeId>) -> bool {
+    ty.is_some_and(|ty| matches!(defs.types[ty], Type::Ref { kind: RefKind::ReferenceTo, .. }))
 }
 
 fn append(defs: &Defs, text: &mut String, ty: Option<TypeId>, step: &Step) -> Option<TypeId> {
@@ -72,7 +80,9 @@ fn append(defs: &Defs, text: &mut String, ty: Option<TypeId>, step: &Step) -> Op
             None
         }
         Step::Deref => {
-            text.push('^');
+            if !is_followed(defs, ty) {
+                text.push('^');
+            }
             target(defs, ty)
         }
         Step::Bit(n) => {

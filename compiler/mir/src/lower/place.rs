@@ -140,14 +140,7 @@ impl FuncLower<'_, '_> {
     fn root(&mut self, place: &body::Place) -> Access {
         match &place.root {
             Root::Var(id) => self.variable(*id),
-            Root::Temp(temp) => Access {
-                ty: self.temp_type(*temp),
-                place: self.temp_place(*temp),
-                part: None,
-                normalise: false,
-                unchecked: None,
-                capacity: None,
-            },
+            Root::Temp(temp) => self.temp(*temp),
             Root::Deref(reference) => {
                 let value = self.value(reference);
                 let name = path::of_expr(self.defs, reference);

@@ -25,7 +25,7 @@ impl FuncLower<'_, '_> {
             self.b.switch_to(run);
         }
         for (temp, argument) in &call.arguments {
-            let place = self.temp_place(*temp);
+            let place = self.temp(*temp).place;
             match repr(self.defs, argument.ty) {
                 Some(_) => {
                     let value = self.value(argument);

@@ -472,7 +472,7 @@ fn references_reach_only_variables_whose_address_is_taken() {
     for (offset, fault) in [(0, 0), (2, Fault::BadReference.number()), (-2, Fault::BadReference.number())] {
         let mut test = Test::new();
         let int = Types::elem(Elem::Int);
-        let pointer = test.intern(Type::Ref { pointer: true, target: int });
+        let pointer = test.intern(Type::Ref { kind: RefKind::PointerTo, target: int });
         let before = test.local("before", int);
         let x = test.local("x", int);
         test.defs.vars[x].address_taken = true;
@@ -491,7 +491,7 @@ fn references_reach_only_variables_whose_address_is_taken() {
     }
     let mut test = Test::new();
     let int = Types::elem(Elem::Int);
-    let pointer = test.intern(Type::Ref { pointer: true, target: int });
+    let pointer = test.intern(Type::Ref { kind: RefKind::PointerTo, target: int });
     let p = test.local("p", pointer);
     let target = Place { root: Root::Deref(Box::new(test.read(p))), steps: Vec::new(), ty: int, span: SPAN };
     assert_eq!(test.run(vec![assign(target, number(Elem::Int, 1))]).fault, Fault::NullReference.number());
@@ -535,7 +535,7 @@ fn layout_aligns_and_refuses_what_is_too_large() {
 fn retain_ranges_leave_out_references() {
     let mut test = Test::new();
     let dint = Types::elem(Elem::Dint);
-    let reference = test.intern(Type::Ref { pointer: false, target: dint });
+    let reference = test.intern(Type::Ref { kind: RefKind::RefTo, target: dint });
     let field = |name: &str, ty| Field { name: name.into(), ty, init: Init::Default, span: SPAN };
     let id = test.defs.structs.push(StructDef {
         name: "S".into(),

@@ -9,6 +9,7 @@ use super::text_ops::texts;
 use crate::ir::{Base, Place, ValueId};
 use plcc_diag::bug;
 use plcc_hir::body::{Expr, ExprKind};
+use plcc_hir::visit::{self, Visitor};
 use plcc_hir::{Defs, Type, TypeId};
 use plcc_stdlib::funcs::TextOp;
 use plcc_stdlib::prim::{PrimOp, Repr};
@@ -87,10 +88,16 @@ impl Temps {
     }
 }
 
-/// The capacity of the longest STRING and WSTRING that a variable can have.
+/// The capacity of the longest STRING and WSTRING that a variable can have, or a literal where a temporary of a body
+/// holds strings of any capacity.
 pub(super) fn longest(defs: &Defs) -> [u32; 2] {
-    let fields = defs.structs.iter().flat_map(|s| s.fields.iter().map(|f| f.ty));
     let mut found = [0; 2];
+    for body in &defs.bodies {
+        if body.temps.iter().any(|ty| matches!(defs.types[*ty], Type::AnyString { .. })) {
+            visit::stmts(&body.stmts, &mut Literals(&mut found));
+        }
+    }
+    let fields = defs.structs.iter().flat_map(|s| s.fields.iter().map(|f| f.ty));
     for mut ty in defs.vars.iter().map(|v| v.ty).chain(fields) {
         loop {
             match &defs.types[ty] {
@@ -105,6 +112,21 @@ pub(super) fn longest(defs: &Defs) -> [u32; 2] {
         }
     }
     found
+}
+
+/// The longest literals of a body.
+struct Literals<'f>(&'f mut [u32; 2]);
+
+impl Visitor for Literals<'_> {
+    fn expr(&mut self, expr: &Expr) {
+        let (wide, length) = match &expr.kind {
+            ExprKind::String(s) => (false, s.len()),
+            ExprKind::WString(s) => (true, s.len()),
+            _ => return,
+        };
+        let longest = &mut self.0[usize::from(wide)];
+        *longest = (*longest).max(length as u32);
+    }
 }
 
 impl FuncLower<'_, '_> {
@@ -155,7 +177,7 @@ impl FuncLower<'_, '_> {
                 self.text_at(&access).unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]))
             }
             ExprKind::Temp(temp) => {
-                let access = Self::plain(self.temp_place(*temp), self.temp_type(*temp));
+                let access = self.temp(*temp);
                 let text = self.text_at(&access);
                 let text = text.unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]));
                 Text { left_over: true, ..text }

@@ -2,6 +2,7 @@
 //! Short constants stand in the code; the rest is done by the bodies in `stdlib::rt::strings`.
 
 use super::func::FuncLower;
+use super::place::Access;
 use super::text::{Capacity, Text, disjoint, same};
 use crate::ir::{Base, IndexTerm, Place, TextPlace, ValueId};
 use plcc_diag::bug;
@@ -299,6 +300,12 @@ impl FuncLower<'_, '_> {
         };
         let texts: Vec<&Text> = std::iter::once(to).chain(&operands.texts).collect();
         self.call_text(f, &texts, &operands.values);
+    }
+
+    /// Writes the text of a value into a string.
+    pub fn write_text(&mut self, value: ValueId, elem: Elem, to: &Access) {
+        let Some(to) = self.text_at(to) else { bug!("{:?} is no string", self.defs.types[to.ty]) };
+        self.build(TextOp::Write(elem), &Operands { texts: Vec::new(), values: vec![value] }, &to);
     }
 
     pub(super) fn call_text(&mut self, f: &'static TextFn, texts: &[&Text], values: &[ValueId]) -> ValueId {

@@ -232,6 +232,17 @@ pub enum RefKind {
     ReferenceTo,
 }
 
+impl RefKind {
+    /// The words before the target type.
+    pub fn keyword(self) -> &'static str {
+        match self {
+            RefKind::RefTo => "REF_TO",
+            RefKind::PointerTo => "POINTER TO",
+            RefKind::ReferenceTo => "REFERENCE TO",
+        }
+    }
+}
+
 /// One dimension of an array.
 #[derive(Debug, Clone)]
 pub enum Dim {
@@ -264,6 +275,8 @@ pub struct Init {
 pub enum InitKind {
     /// `expr`.
     Expr(Expr),
+    /// `REF= variable`, of a REFERENCE TO.
+    Reference(Expr),
     /// `[3(0), 2(1, 2), 7]`; without brackets as in Ed. 2 (`bracketed` is then false).
     Array {
         /// Whether it stood in brackets.

@@ -52,8 +52,19 @@ pub struct File {
     /// Behind a mistake of syntax: statements that were mended by a guess, and uses of names whose declaration could not be
     /// read. A further message about them would not be a further mistake.
     pub doubtful: Vec<Span>,
+    /// Behind declarations that lack their names.
+    pub unnamed: Unnamed,
     /// Parts of a PLCopen XML file and how messages name them; inner ones behind the outer ones that hold them.
     pub places: Vec<Place>,
+}
+
+/// Declarations without a name: what is used and not declared may be meant by them.
+#[derive(Debug, Clone, Default)]
+pub struct Unnamed {
+    /// How many.
+    pub count: usize,
+    /// If there are any, all names of the file in its order, in upper case.
+    pub names: Vec<(SmolStr, Span)>,
 }
 
 /// A part of a PLCopen XML file that users know by another name than its line.

@@ -121,6 +121,7 @@ impl Printer {
         let e = print_expr;
         match &s.kind {
             StmtKind::Assign(target, value) => self.line(&format!("assign {} := {}", e(target), e(value))),
+            StmtKind::Bind(target, value) => self.line(&format!("bind {} REF= {}", e(target), e(value))),
             StmtKind::AssignAttempt(target, value) => self.line(&format!("attempt {} ?= {}", e(target), e(value))),
             StmtKind::Expr(call) => self.line(&format!("call {}", e(call))),
             StmtKind::If { arms, otherwise } => {

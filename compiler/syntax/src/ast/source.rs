@@ -31,7 +31,7 @@ pub fn item(item: &Item, texts: &dyn Texts) -> String {
         Item::Pou(pou) => w.pou(pou),
         Item::Types(types) => w.block("TYPE", "END_TYPE", |w| {
             for decl in types {
-                let init = decl.init.as_ref().map(|i| format!(" := {}", w.init(i))).unwrap_or_default();
+                let init = decl.init.as_ref().map(|i| w.initial(i)).unwrap_or_default();
                 w.type_lines(&format!("{} : ", decl.name.text), &decl.ty, &format!("{init};"));
             }
         }),
@@ -195,7 +195,7 @@ impl Writer<'_> {
             None => "",
         });
         if let Some(init) = &decl.init {
-            tail.push_str(&format!(" := {}", self.init(init)));
+            tail.push_str(&self.initial(init));
         }
         tail.push(';');
         if let (TypeExprKind::Inferred(_), Some(name)) = (&decl.ty.kind, decl.names.first()) {
@@ -258,21 +258,22 @@ impl Writer<'_> {
                 format!("{} ({}..{})", base.text, self.expr(low), self.expr(high))
             }
             TypeExprKind::Ref { kind, target } => {
-                let word = match kind {
-                    RefKind::RefTo => "REF_TO",
-                    RefKind::PointerTo => "POINTER TO",
-                    RefKind::ReferenceTo => "REFERENCE TO",
-                };
-                format!("{word} {}", self.ty(target))
+                format!("{} {}", kind.keyword(), self.ty(target))
             }
             TypeExprKind::Inferred(_) | TypeExprKind::Error => "?".into(),
         }
     }
 
+    /// What stands behind the type of a declaration.
+    fn initial(&self, init: &Init) -> String {
+        let sign = if matches!(init.kind, InitKind::Reference(_)) { "REF=" } else { ":=" };
+        format!(" {sign} {}", self.init(init))
+    }
+
     fn init(&self, init: &Init) -> String {
         let list = |elems: &[InitElem]| elems.iter().map(|e| self.elem(e)).collect::<Vec<_>>().join(", ");
         match &init.kind {
-            InitKind::Expr(e) => self.expr(e),
+            InitKind::Expr(e) | InitKind::Reference(e) => self.expr(e),
             InitKind::Array { elems, .. } => format!("[{}]", list(elems)),
             InitKind::Struct(fields) => {
                 let fields = fields.iter().map(|(n, i)| format!("{} := {}", n.text, self.init(i)));
@@ -401,6 +402,9 @@ impl Writer<'_> {
             }
             StmtKind::AssignAttempt(target, value) => {
                 self.line(&format!("{} ?= {};", self.expr(target), self.expr(value)));
+            }
+            StmtKind::Bind(target, value) => {
+                self.line(&format!("{} REF= {};", self.expr(target), self.expr(value)));
             }
             StmtKind::Expr(call) => self.line(&format!("{};", self.expr(call))),
             StmtKind::If { arms, otherwise } => {

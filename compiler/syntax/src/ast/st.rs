@@ -19,6 +19,8 @@ pub enum StmtKind {
     Assign(Expr, Expr),
     /// `r ?= s`.
     AssignAttempt(Expr, Expr),
+    /// `r REF= x`.
+    Bind(Expr, Expr),
     /// `fb(...)`, `f(...)`; anything else here is an error that `hir` reports ("has no effect").
     Expr(Expr),
     /// IF.

@@ -169,11 +169,37 @@ impl Blocks<'_, '_> {
     /// A token of a body in Structured Text, or of a transition's condition.
     pub(super) fn statement_token(&mut self) {
         let t = self.peek(0);
+        // Only REPEAT may stand directly behind itself.
+        let word = Construct::statement(t.kind).is_some_and(|b| b != Construct::Repeat)
+            || matches!(t.kind, Tok::Then | Tok::Elsif | Tok::Else | Tok::Do | Tok::Of | Tok::Until);
+        if word && self.peek(1).kind == t.kind {
+            let message = format!("{} stands twice", t.kind.describe());
+            self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove one of them"));
+            self.at += 1;
+            return;
+        }
         match t.kind {
             Tok::Id => return self.name_in_statement(t),
             Tok::Else => self.branch(t, |f| matches!(f.block, Construct::If | Construct::Case)),
             Tok::Elsif => self.branch(t, |f| f.block == Construct::If),
-            Tok::Until => self.branch(t, |f| f.block == Construct::Repeat),
+            // The condition ends here, and with it the loop.
+            Tok::Semi if self.top() == Some(Construct::Repeat) && self.stack.last().is_some_and(|f| f.has_else) => {
+                self.take(Tok::Semi);
+                while self.peek(0).kind == Tok::Semi {
+                    self.at += 1;
+                }
+                let next = self.peek(0);
+                let ends = next.kind == Tok::EndRepeat
+                    || next.kind == Tok::Id && (self.split_end() || self.misspelled_end(next));
+                if !ends {
+                    self.close_above(self.stack.len() - 1, next);
+                }
+                return;
+            }
+            Tok::Until => {
+                self.missing_repeat(t);
+                self.branch(t, |f| f.block == Construct::Repeat);
+            }
             Tok::Of => {
                 if let Some(frame) = self.stack.last_mut()
                     && frame.block == Construct::Case
@@ -192,18 +218,22 @@ impl Blocks<'_, '_> {
                 }
             }
             Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.late_section(t),
+            // `MOD(a, b, ENO => ok);`: an operator's word as the function that begins a statement.
+            Tok::Op if self.at_statement() && self.peek(1).kind == Tok::LParen => {
+                let word = t.text(self.text).starts_with(|c: char| c.is_ascii_alphabetic());
+                return self.take(if word { Tok::Id } else { Tok::Op });
+            }
             Tok::Then | Tok::Do => self.missing_opener(t.kind),
             kind => {
+                if kind == Tok::Case && self.at_statement() && self.labels_case() {
+                    let message = "CASE stands once, before all of its values";
+                    self.report.push(
+                        self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("write the value alone: `1:`"),
+                    );
+                    self.at += 1;
+                    return;
+                }
                 if let Some(block) = Construct::statement(kind) {
-                    // Only REPEAT may stand directly behind itself.
-                    if self.peek(1).kind == kind && block != Construct::Repeat {
-                        let message = format!("{} stands twice", kind.describe());
-                        self.report.push(
-                            self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove one of them"),
-                        );
-                        self.at += 1;
-                        return;
-                    }
                     // A condition of a transition has no statements.
                     return self.open(block, kind);
                 }
@@ -212,12 +242,25 @@ impl Blocks<'_, '_> {
         self.take(t.kind);
     }
 
+    /// Whether the CASE that comes next stands before a value of the CASE that is open, as other languages write it.
+    fn labels_case(&self) -> bool {
+        let ends = |k: Tok| matches!(k, Tok::Colon | Tok::Semi | Tok::Of | Tok::Assign | Tok::EndCase | Tok::StartItem);
+        let open = self.stack.last().is_some_and(|f| f.block == Construct::Case && f.has_of);
+        open && (1..).map(|n| self.peek(n).kind).find(|k| ends(*k)) == Some(Tok::Colon)
+    }
+
     fn name_in_statement(&mut self, t: Token) {
         if t.first || self.at_statement() {
             if self.action_here() {
                 return self.next_action();
             }
             if self.is(0, "JMP") && self.peek(1).kind == Tok::Id && !self.peek(1).first {
+                return self.take(Tok::Jmp);
+            }
+            if self.is(0, "GOTO") && self.peek(1).kind == Tok::Id && !self.peek(1).first {
+                self.report.push(
+                    self.report.at(codes::MISSPELLED, t.start, t.end, "a jump is not written GOTO").help("write `JMP`"),
+                );
                 return self.take(Tok::Jmp);
             }
             let chart = self.top() == Some(Construct::Transition) && (self.step_here() || self.transition_here());
@@ -259,6 +302,28 @@ impl Blocks<'_, '_> {
         self.report.push(self.report.at(codes::MISSING_WORD, first.start, first.end, message).help(help));
         self.stack.push(super::Frame::new(block, first, None, None));
         self.out.insert(start, Token::inserted(kind, first.start));
+    }
+
+    /// UNTIL comes next, and END_REPEAT behind it, but no REPEAT is open: where it belongs is not known, it is inserted here.
+    fn missing_repeat(&mut self, t: Token) {
+        let open = self.stack.iter().rev().take_while(|f| f.block.is_statement());
+        if open.into_iter().any(|f| f.block == Construct::Repeat && !f.has_else)
+            || self.looks == 0
+            || !self.at_statement()
+        {
+            return;
+        }
+        self.looks -= 1;
+        if !self.closers_ahead(Construct::Repeat, 1) {
+            return;
+        }
+        self.report.push(
+            self.report
+                .at(codes::MISSING_WORD, t.start, t.end, "REPEAT is missing before this UNTIL")
+                .help("write `REPEAT` before the statements of the loop"),
+        );
+        self.stack.push(super::Frame::new(Construct::Repeat, t, None, None));
+        self.insert(Tok::Repeat);
     }
 
     /// A word one letter away from one that opens a statement (or is ELSIF), before something that cannot follow a name.

@@ -11,13 +11,28 @@ const QUALIFIERS: &[&str] =
 /// Words that open a section of variables.
 const SECTIONS: &[&str] = &["VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_EXTERNAL", "VAR_GLOBAL", "VAR_TEMP"];
 
+/// The section of variables that a word in upper case names or means: misspelt, cut short, or in two words. A parenthesis
+/// stands for a list of parameters.
+pub(crate) fn section_meant(word: &str) -> Option<&'static str> {
+    let word = word.split_ascii_whitespace().collect::<Vec<_>>().join("_");
+    let alias = match word.as_str() {
+        "VAR_IN" | "(" => Some("VAR_INPUT"),
+        "VAR_OUT" => Some("VAR_OUTPUT"),
+        "VAR_INOUT" => Some("VAR_IN_OUT"),
+        _ => None,
+    };
+    let mut words = SECTIONS.iter().copied();
+    alias.or_else(|| words.clone().find(|s| word == *s)).or_else(|| words.find(|s| is_close(&word, s)))
+}
+
 impl Blocks<'_, '_> {
     /// What stands between the keyword of a POU and its first section.
     pub(super) fn pou_head(&mut self, block: Construct) {
-        if self.peek(0).kind != Tok::Id {
-            return;
+        match self.peek(0) {
+            t if t.kind == Tok::Id => self.take(Tok::Id),
+            t if t.kind == Tok::Colon || t.first => self.missing_name(block),
+            _ => return,
         }
-        self.take(Tok::Id);
         for word in ["EXTENDS", "IMPLEMENTS"] {
             let t = self.peek(0);
             if self.is(0, word) && self.peek(1).kind == Tok::Id {
@@ -32,11 +47,31 @@ impl Blocks<'_, '_> {
                 }
             }
         }
+        let parameters = self.parameters_behind_name();
+        if block != Construct::Function && self.peek(0).kind == Tok::Colon && !self.peek(1).first {
+            let (t, end) = (self.peek(0), self.peek(1).end);
+            let word = self.stack.last().map_or("", |f| f.opener.kind.describe());
+            if let Some(name) = self.out.last().filter(|t| t.kind == Tok::Id) {
+                self.report.lose(name.text(self.text));
+            }
+            self.report.push(
+                self.report
+                    .at(codes::UNEXPECTED, t.start, end, format!("a {word} has no result type"))
+                    .help("declare a VAR_OUTPUT, or make it a FUNCTION"),
+            );
+            self.at += 2;
+        }
         if block == Construct::Function {
             let (t, next) = (self.peek(0), self.peek(1));
             let type_alone = t.kind == Tok::Id && !t.first && (next.first || next.kind == Tok::Var);
-            if t.kind == Tok::Colon {
+            if t.kind == Tok::Id && !t.first && next.kind == Tok::Colon {
+                self.drop_word(t, format!("`{}` does not belong behind the name", t.text(self.text)));
+            }
+            if self.peek(0).kind == Tok::Colon {
                 self.take(Tok::Colon);
+                while self.peek(0).kind == Tok::Colon {
+                    self.drop_word(self.peek(0), "`:` stands twice".into());
+                }
                 self.result_type();
             } else if type_alone {
                 let name = t.text(self.text);
@@ -53,6 +88,57 @@ impl Blocks<'_, '_> {
         if self.peek(0).kind == Tok::Semi {
             self.at += 1;
         }
+        self.out.extend(parameters);
+    }
+
+    /// `FUNCTION Add(a : INT, b : INT) : INT`: reported; the tokens of the VAR_INPUT that it means.
+    fn parameters_behind_name(&mut self) -> Vec<Token> {
+        let open = self.peek(0);
+        let list = self.tokens[self.at..].iter().position(|t| t.kind == Tok::RParen || t.kind == Tok::Semi);
+        let Some(close) = list.filter(|n| open.kind == Tok::LParen && self.peek(*n).kind == Tok::RParen) else {
+            return Vec::new();
+        };
+        let end = self.peek(close);
+        self.report.push(
+            self.report
+                .at(codes::UNEXPECTED, open.start, end.end, "parameters do not stand behind the name")
+                .help("declare them in a section: `VAR_INPUT a : INT; END_VAR`"),
+        );
+        let mut out = vec![Token { kind: Tok::Var, ..open }];
+        let mut typed = false;
+        for t in &self.tokens[self.at + 1..self.at + close] {
+            typed |= t.kind == Tok::Colon;
+            // `a, b : INT, c : REAL`: behind a type the `,` ends a declaration.
+            let ends = typed && t.kind == Tok::Comma;
+            typed &= !ends;
+            out.push(Token { kind: if ends { Tok::Semi } else { t.kind }, ..*t });
+        }
+        if close > 1 {
+            out.push(Token::inserted(Tok::Semi, end.start));
+        }
+        out.push(Token { kind: Tok::EndVar, ..end });
+        self.at += close + 1;
+        out
+    }
+
+    /// A POU without its name: reported, and declared without.
+    fn missing_name(&mut self, block: Construct) {
+        let at = self.previous_end();
+        let word = self.last().describe();
+        let example = if block == Construct::Program { "Main" } else { "Motor" };
+        self.report.push(
+            self.report
+                .at(codes::UNEXPECTED, at, at, format!("a name is missing behind {word}"))
+                .help(format!("write for example `{word} {example}`")),
+        );
+        self.report.lose_unnamed();
+        self.insert(Tok::Id);
+    }
+
+    /// Leaves the next token out.
+    fn drop_word(&mut self, t: Token, message: String) {
+        self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it"));
+        self.at += 1;
     }
 
     /// A further word on the line of a POU's name.
@@ -61,9 +147,7 @@ impl Blocks<'_, '_> {
         if t.kind != Tok::Id || t.first || !(next.first || next.kind == Tok::Var) {
             return;
         }
-        let message = format!("`{}` does not belong behind the name", t.text(self.text));
-        self.report.push(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it"));
-        self.at += 1;
+        self.drop_word(t, format!("`{}` does not belong behind the name", t.text(self.text)));
     }
 
     /// Emits the tokens of one type, as far as the body could be mistaken for its continuation.
@@ -138,6 +222,19 @@ impl Blocks<'_, '_> {
 
     /// A word one letter away from a section keyword, before something that looks like a declaration.
     fn misspelled_section(&mut self, t: Token) -> bool {
+        let upper = t.text(self.text).to_ascii_uppercase();
+        if let Some(qualifier) = upper.strip_prefix("VAR_").filter(|q| QUALIFIERS.contains(q) && t.first) {
+            self.report.push(
+                self.report
+                    .at(codes::MISSPELLED, t.start, t.end, format!("`{upper}` is no section of variables"))
+                    .help(format!("write `VAR {qualifier}`, two words")),
+            );
+            self.open(Construct::Var, Tok::Var);
+            let at = t.end;
+            let start = at - qualifier.len() as u32;
+            self.emit(Token { kind: Tok::Qualifier, first: false, start, end: at });
+            return true;
+        }
         let declares = self.peek(1).kind == Tok::Id
             && (matches!(self.peek(2).kind, Tok::Colon | Tok::Comma) || self.peek(2).kind == Tok::Id);
         let text = t.text(self.text);
@@ -145,7 +242,7 @@ impl Blocks<'_, '_> {
             return false;
         }
         let upper = text.to_ascii_uppercase();
-        let Some(meant) = SECTIONS.iter().find(|s| is_close(&upper, s)) else { return false };
+        let Some(meant) = section_meant(&upper) else { return false };
         self.report.push(
             self.report
                 .at(codes::MISSPELLED, t.start, t.end, format!("`{text}` is no section of variables"))
@@ -191,8 +288,26 @@ impl Blocks<'_, '_> {
 
     /// Opens a section of variables.
     pub(super) fn open_section(&mut self) {
-        let kind = self.peek(0).kind;
+        let (t, next) = (self.peek(0), self.peek(1));
+        let kind = t.kind;
         self.open(Construct::Var, kind);
+        // `VAR INPUT a : INT;`
+        let words = &self.text[t.start as usize..next.end as usize];
+        let whole = words.split_ascii_whitespace().count() == 2 && next.kind == Tok::Id && !next.first;
+        if let Some(meant) = section_meant(&words.to_ascii_uppercase()).filter(|_| whole)
+            && self.peek(1).kind == Tok::Id
+        {
+            let message = format!("`{words}` is no section of variables");
+            self.report.push(
+                self.report
+                    .at(codes::MISSPELLED, t.start, next.end, message)
+                    .help(format!("write `{meant}`, one word")),
+            );
+            if let Some(var) = self.out.last_mut() {
+                var.end = next.end;
+            }
+            self.at += 1;
+        }
         while self.peek(0).kind == Tok::Id
             && QUALIFIERS.iter().any(|q| self.is(0, q))
             && !matches!(self.peek(1).kind, Tok::Colon | Tok::Comma | Tok::Dot)
@@ -214,6 +329,9 @@ impl Blocks<'_, '_> {
         let start = self.at_declaration();
         let in_pou = self.top() == Some(Construct::Var) && self.stack.len() > 1;
         match t.kind {
+            Tok::Struct if start && self.peek(1).kind == Tok::Id && self.peek(2).kind == Tok::Id => {
+                return self.struct_before_name(t);
+            }
             Tok::Struct => return self.open(Construct::Struct, Tok::Struct),
             Tok::Union => return self.open(Construct::Union, Tok::Union),
             Tok::Var | Tok::VarConfig | Tok::VarAccess if !self.names_something() => {
@@ -241,6 +359,21 @@ impl Blocks<'_, '_> {
         self.take(t.kind);
     }
 
+    /// `STRUCT Point x : INT;`, as C writes it, for `Point : STRUCT x : INT;`.
+    fn struct_before_name(&mut self, t: Token) {
+        let name = self.peek(1);
+        let text = name.text(self.text);
+        self.report.push(
+            self.report
+                .at(codes::UNEXPECTED, t.start, name.end, "the name of a structure stands before STRUCT")
+                .help(format!("write `{text} : STRUCT`")),
+        );
+        self.emit(name);
+        self.insert(Tok::Colon);
+        self.open(Construct::Struct, Tok::Struct);
+        self.at += 1;
+    }
+
     /// Whether the next token, a reserved word, stands where only a name can.
     fn names_something(&self) -> bool {
         self.peek(0).kind.is_reserved() && matches!(self.peek(1).kind, Tok::Colon | Tok::Comma)
@@ -249,6 +382,7 @@ impl Blocks<'_, '_> {
     /// A reserved word that stands for a name.
     pub(super) fn reserved_name(&mut self, t: Token) {
         let word = t.text(self.text);
+        self.report.take_for_name(word);
         self.report.push(
             self.report
                 .at(codes::RESERVED_WORD, t.start, t.end, format!("`{word}` is a reserved word"))
@@ -301,6 +435,9 @@ impl Blocks<'_, '_> {
             Tok::Var | Tok::VarConfig | Tok::VarAccess => return self.open_section(),
             Tok::Id => {}
             kind => return self.take(kind),
+        }
+        if t.first && self.misspelled_end(t) {
+            return;
         }
         let name_follows = self.peek(1).kind == Tok::Id && !self.peek(1).first;
         let kind = match self.last() {

@@ -152,6 +152,8 @@ impl Blocks<'_, '_> {
             let frame = self.stack[self.stack.len() - 1];
             self.before_end();
             match frame.block {
+                // What stands behind it may not have been meant for it.
+                Construct::Struct | Construct::Union => self.lose_declared(frame.opener),
                 Construct::Repeat if !frame.has_else => {
                     self.insert(Tok::Until);
                     self.insert(Tok::Bad);
@@ -166,6 +168,16 @@ impl Blocks<'_, '_> {
             } else if self.stack.is_empty() {
                 let item = std::mem::take(&mut self.out);
                 self.items.push(item);
+            }
+        }
+    }
+
+    /// The names that are declared behind a token are not known any more.
+    fn lose_declared(&mut self, opener: Token) {
+        let from = self.out.iter().rposition(|t| t.start <= opener.start).unwrap_or(0);
+        for pair in self.out[from..].windows(2) {
+            if pair[0].kind == Tok::Id && pair[1].kind == Tok::Colon {
+                self.report.lose(pair[0].text(self.text));
             }
         }
     }
@@ -216,11 +228,13 @@ impl Blocks<'_, '_> {
     pub(super) fn misspelled_end(&mut self, t: Token) -> bool {
         let next = self.peek(1);
         let text = t.text(self.text);
-        if !(next.first || next.kind == Tok::Semi) || !(5..20).contains(&text.len()) {
+        if !(next.first || matches!(next.kind, Tok::Semi | Tok::StartItem)) || !(5..20).contains(&text.len()) {
             return false;
         }
         let upper = text.to_ascii_uppercase();
-        let open = self.stack.iter().rev().map(|f| f.block).find(|b| is_close(&upper, b.end().describe()));
+        // A slip of the hand, or the END word cut short: END_CONFIG.
+        let means = |end: &str| is_close(&upper, end) || upper.len() > 6 && end.starts_with(&upper);
+        let open = self.stack.iter().rev().map(|f| f.block).find(|b| means(b.end().describe()));
         let Some(block) = open else { return false };
         let meant = block.end().describe();
         self.report.push(

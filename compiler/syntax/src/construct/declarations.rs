@@ -32,7 +32,8 @@ impl Context<'_> {
 
     /// The section that the keyword in bytes `l..r` opens.
     pub fn section_kind(&self, l: u32, r: u32) -> SectionKind {
-        match self.slice(l, r).to_ascii_uppercase().as_str() {
+        let word = self.slice(l, r).to_ascii_uppercase();
+        match crate::blocks::section_meant(&word).unwrap_or("VAR") {
             "VAR_INPUT" => SectionKind::Input,
             "VAR_OUTPUT" => SectionKind::Output,
             "VAR_IN_OUT" => SectionKind::InOut,

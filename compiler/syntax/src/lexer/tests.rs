@@ -123,8 +123,15 @@ fn signs() {
         ["Assign :=", "Arrow =>", "Attempt ?=", "Rel <=", "Rel >=", "Rel <>", "Op **", "DotDot ..", "Op &", "Caret ^"]
     );
     assert_eq!(lexed("== != && || !").0, ["Eq ==", "Rel !=", "Op &&", "Op ||", "Not !"]);
+    // A comment of another language, and two signs of an expression that goes on.
+    let comment = lexed("a;\n-- text\nb");
+    assert_eq!(
+        (comment.0, comment.1),
+        (vec!["Id a".to_string(), "Semi ;".into(), "Id b".into()], vec!["E0111".into()])
+    );
+    assert_eq!(lexed("a\n--b").0, ["Id a", "Minus -", "Minus -", "Id b"]);
     assert_eq!(lexed("a : = b").0, ["Id a", "Assign : =", "Id b"]);
-    assert_eq!(lexed("a: :=b").0, ["Id a", "Assign : :=", "Id b"]);
+    assert_eq!(lexed("a: :=b").0, ["Id a", "Colon :", "Assign :=", "Id b"]);
 }
 
 #[test]

@@ -11,9 +11,11 @@ impl Recovery<'_, '_> {
     /// Mends the place if the cause is plain; the message says what it was.
     pub(super) fn insert_missing(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
         self.wrong_sign(refused)
+            .or_else(|| self.doubled(refused))
+            .or_else(|| self.foreign_sign(refused, segment))
             .or_else(|| self.value_on_next_line(refused, segment))
             .or_else(|| self.reserved_word(refused))
-            .or_else(|| self.branch_word(refused))
+            .or_else(|| self.branch_word(refused, segment))
             .or_else(|| self.block_word(refused, segment))
             .or_else(|| self.nameless(refused, segment))
             .or_else(|| self.type_on_next_line(refused, segment))
@@ -22,6 +24,7 @@ impl Recovery<'_, '_> {
             .or_else(|| self.operand(refused))
             .or_else(|| self.closing(refused, segment))
             .or_else(|| self.too_much(refused))
+            .or_else(|| self.opening(refused, segment))
             .or_else(|| self.semicolon(refused))
     }
 
@@ -68,6 +71,19 @@ impl Recovery<'_, '_> {
                     self.report.at(codes::FOREIGN_OPERATOR, start, end, "`=>` connects an output, it does not compare");
                 Some(message.help("greater or equal is written `>=`"))
             }
+            Tok::Assign
+                if self.kind(at.wrapping_sub(1)) == Tok::Colon && !self.lacks_type(at) && !self.begins_line(at) =>
+            {
+                let colon = self.tokens.remove(at - 1);
+                let message = self.report.at(codes::SPLIT_ASSIGN, colon.start, end, "one `:` too many before `:=`");
+                Some(message.help("write `:=`"))
+            }
+            Tok::Colon if self.kind(at + 1) == Tok::Assign && !self.begins_line(at + 1) => {
+                let (_, end) = self.bytes(at + 1);
+                self.tokens.remove(at);
+                let message = self.report.at(codes::SPLIT_ASSIGN, start, end, "one `:` too many before `:=`");
+                Some(message.help("write `:=`"))
+            }
             Tok::Assign if self.kind(at.wrapping_sub(1)) == Tok::Assign => {
                 self.tokens.remove(at);
                 let message = self.report.at(codes::UNEXPECTED, start, end, "`:=` stands twice");
@@ -75,6 +91,93 @@ impl Recovery<'_, '_> {
             }
             _ => None,
         }
+    }
+
+    /// `ELSE:`, `ARRAY [1:5]`, `ARRAY [5]`, `AT QX0.1`: what other languages write.
+    fn foreign_sign(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let t = *self.tokens.get(at)?;
+        let before = self.kind(at.wrapping_sub(1));
+        let returns = at == segment.start + 1 && before == Tok::Id && !t.first && refused.wants(";") && {
+            self.tokens[at - 1].text(self.text).eq_ignore_ascii_case("RETURN")
+        };
+        match t.kind {
+            kind if returns && (is_operand_start(kind) || kind == Tok::LParen) => {
+                let end = self.bytes(segment.end - 1).1;
+                self.tokens.drain(at..segment.end);
+                let message = self.report.at(codes::UNEXPECTED, t.start, end, "RETURN takes no value");
+                Some(message.help("a function gives its value by its name: `Name := value; RETURN;`"))
+            }
+            Tok::Colon if refused.wants(":=") && self.opener(at).is_some() && before == Tok::Id => {
+                self.tokens[at].kind = Tok::Assign;
+                let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "`:` gives no value");
+                Some(message.help("write `:=`"))
+            }
+            Tok::Colon if before == Tok::Else => {
+                self.tokens.remove(at);
+                let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "no `:` stands behind ELSE");
+                Some(message.help("remove it"))
+            }
+            Tok::Colon if refused.wants("..") && !refused.wants(":") => {
+                self.tokens[at].kind = Tok::DotDot;
+                let message = self.report.at(codes::UNEXPECTED, t.start, t.end, "bounds are not separated by `:`");
+                Some(message.help("write `..`: `ARRAY [1..5] OF INT`"))
+            }
+            Tok::RBracket if refused.wants("..") && before == Tok::Int => {
+                let count = self.tokens[at - 1];
+                let text = count.text(self.text);
+                self.insert(at, Tok::DotDot);
+                self.tokens.insert(at + 1, count);
+                let message = self.report.at(
+                    codes::UNEXPECTED,
+                    count.start,
+                    count.end,
+                    "an array has a lower and an upper bound",
+                );
+                let last = text.parse::<u64>().ok().and_then(|n| n.checked_sub(1));
+                let bounds = last.map_or(String::new(), |last| format!("`[0..{last}]` or "));
+                Some(message.help(format!("write {bounds}`[1..{text}]`")))
+            }
+            Tok::Id if t.text(self.text).eq_ignore_ascii_case("AT") && refused.wants(":") => {
+                let colon = self.tokens[at..segment.end].iter().position(|t| t.kind == Tok::Colon)? + at;
+                let (start, end) = (self.bytes(at + 1).0, self.bytes(colon - 1).1);
+                if colon == at + 1 || self.surroundings(at) != Surroundings::Declarations {
+                    return None;
+                }
+                let text = &self.text[start as usize..end as usize];
+                let message = self.report.at(codes::BAD_ADDRESS, start, end, format!("`{text}` is no address"));
+                self.tokens.drain(at..colon);
+                Some(message.help("an address begins with `%`: `AT %QX0.1`"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the `:` before the token `at` is that of a declaration, and its type is missing.
+    fn lacks_type(&self, at: usize) -> bool {
+        let start = self.segment(at).start;
+        let colons = self.tokens[start.min(at)..at].iter().filter(|t| t.kind == Tok::Colon).count();
+        self.surroundings(at) == Surroundings::Declarations && colons == 1
+    }
+
+    /// A word or sign that is written twice on a line.
+    fn doubled(&mut self, refused: &Refused) -> Option<Diagnostic> {
+        use Tok::*;
+        let at = refused.at;
+        let (t, before) = (*self.tokens.get(at)?, *self.tokens.get(at.checked_sub(1)?)?);
+        let kind =
+            matches!(t.kind, Id | Int | Lit | Qualified | Colon | CaseOf | Of | To | By | Then | Do | Until | At);
+        let text = t.text(self.text);
+        // `value value + 1` lacks its `:=`, `counter Counter` its `:`.
+        if t.kind == Id && !matches!(self.kind(at + 1), Assign | Colon | Comma | LParen | RParen | RBracket) {
+            return None;
+        }
+        if !kind || t.first || t.is_inserted() || !text.eq_ignore_ascii_case(before.text(self.text)) {
+            return None;
+        }
+        self.tokens.remove(at);
+        let message = self.report.at(codes::UNEXPECTED, t.start, t.end, format!("`{text}` stands twice"));
+        Some(message.help("remove one of them"))
     }
 
     /// `x :=` at the end of a line and `y := 1;` on the next: the value of x is missing, not the `;`.
@@ -108,7 +211,7 @@ impl Recovery<'_, '_> {
     }
 
     /// A second ELSE, ELSIF behind ELSE, REPEAT without UNTIL.
-    fn branch_word(&mut self, refused: &Refused) -> Option<Diagnostic> {
+    fn branch_word(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
         let at = refused.at;
         let (start, end) = self.bytes(at);
         match self.kind(at) {
@@ -124,6 +227,16 @@ impl Recovery<'_, '_> {
                 let message =
                     self.report.at(codes::UNEXPECTED, start, end, format!("{word} does not belong to an open IF here"));
                 Some(message.help("an IF has any number of ELSIF and then at most one ELSE"))
+            }
+            // An expression alone before END_REPEAT was meant as the condition.
+            Tok::EndRepeat if refused.wants(";") && segment.start < at => {
+                if self.tokens[segment.start..at].iter().any(|t| t.kind == Tok::Assign) {
+                    return None;
+                }
+                let (start, end) = self.bytes(segment.start);
+                self.tokens.insert(segment.start, Token::inserted(Tok::Until, start));
+                let message = self.report.at(codes::MISSING_WORD, start, end, "UNTIL is missing before this condition");
+                Some(message.help("write `UNTIL condition END_REPEAT`"))
             }
             Tok::EndRepeat if refused.wants("UNTIL") => {
                 let message = self.report.at(codes::MISSING_WORD, start, end, "UNTIL is missing in this REPEAT");
@@ -194,7 +307,9 @@ impl Recovery<'_, '_> {
         }
         let (start, end) = self.bytes(at);
         let message = self.report.at(codes::UNEXPECTED, start, end, "a name is missing before `:`");
-        self.give_up(refused, segment).then(|| message.help("a declaration is written `name : type;`"))
+        self.report.lose_unnamed();
+        self.insert(at, Tok::Id);
+        Some(message.help("a declaration is written `name : type;`"))
     }
 
     /// `Mode : (Idle, Run)` without `;` before `Motor : STRUCT`: the next name was read as part of the type.
@@ -257,6 +372,19 @@ impl Recovery<'_, '_> {
             return Some(message.help("an array is written `ARRAY [1..3] OF INT`"));
         }
         let has_to = self.tokens[segment.clone()].iter().any(|t| t.kind == Tok::To);
+        let word = self.tokens.get(at).map_or("", |t| t.text(self.text));
+        if kind == Tok::Id && refused.wants("TO") && word.eq_ignore_ascii_case("DOWNTO") {
+            let (start, end) = self.bytes(at);
+            self.tokens[at].kind = Tok::To;
+            let message = self.report.at(codes::UNEXPECTED, start, end, "FOR has no DOWNTO");
+            return Some(message.help("write `FOR i := 10 TO 1 BY -1 DO`"));
+        }
+        if kind == Tok::Id && refused.wants("BY") && word.eq_ignore_ascii_case("STEP") {
+            let (start, end) = self.bytes(at);
+            self.tokens[at].kind = Tok::By;
+            let message = self.report.at(codes::MISSPELLED, start, end, "the step of a FOR stands behind BY");
+            return Some(message.help("write `BY`"));
+        }
         if refused.wants("TO") && !has_to && (is_operand_start(kind) || kind == Tok::LParen) {
             let message = self.missing(codes::MISSING_WORD, at, "TO is missing here");
             self.insert(at, Tok::To);
@@ -300,7 +428,12 @@ impl Recovery<'_, '_> {
         if !refused.wants_operand() || !nothing {
             return None;
         }
+        let value = matches!(kind, Comma | RParen) && self.in_enumeration(at);
+        if value {
+            self.report.lose_unnamed();
+        }
         let message = match (self.kind(at.wrapping_sub(1)), kind) {
+            _ if value => "a value of the enumeration is missing here".to_string(),
             (_, Then) | (While, Do) => "a condition is missing here".to_string(),
             (before, _) if is_operator(before) => {
                 let sign = self.tokens[at - 1].text(self.text);
@@ -309,8 +442,48 @@ impl Recovery<'_, '_> {
             _ => "an expression is missing here".to_string(),
         };
         let message = self.missing(codes::MISSING_OPERAND, at, message);
+        let braces = self.text.get(self.end_before(at) as usize..self.bytes(at).0 as usize);
+        let step = match braces {
+            Some(gap) if gap.contains('{') => Some(
+                "braces hold pragmas; values of components stand in `(x := 1, y := 2)`, of arrays in `[1, 2]`".into(),
+            ),
+            _ => self.step_habit(at),
+        };
         self.insert(at, Bad);
-        Some(message.help("write a literal, a variable or a call there"))
+        if let Some(help) = step {
+            return Some(message.help(help));
+        }
+        Some(message.help(if value {
+            "write a name, or remove a `,`"
+        } else {
+            "write a literal, a variable or a call there"
+        }))
+    }
+
+    /// What to write for `i++` and `i += 1`, whose second sign is the one at or before `at`.
+    fn step_habit(&self, at: usize) -> Option<String> {
+        let arrow = self.tokens.get(at).is_some_and(|t| t.text(self.text) == ">");
+        if arrow && self.kind(at.wrapping_sub(1)) == Tok::Minus && self.bytes(at).0 == self.end_before(at) {
+            return Some("a component is written with a point: `m.speed`, behind a reference `p^.speed`".into());
+        }
+        let signs = |k| matches!(k, Tok::Plus | Tok::Minus | Tok::Star | Tok::Op);
+        let [name, first, second] =
+            if self.kind(at) == Tok::Eq { [2, 1, 0] } else { [3, 2, 1] }.map(|n| at.checked_sub(n));
+        let [name, first, second] = [name?, first?, second?].map(|n| self.tokens.get(n).copied());
+        let (name, first, second) = (name?, first?, second?);
+        let pair = first.kind == second.kind && matches!(first.kind, Tok::Plus | Tok::Minus) || second.kind == Tok::Eq;
+        if name.kind != Tok::Id || !signs(first.kind) || !pair || first.end != second.start {
+            return None;
+        }
+        let (name, sign) = (name.text(self.text), first.text(self.text));
+        Some(format!("write `{name} := {name} {sign} {}`", if second.kind == Tok::Eq { "..." } else { "1" }))
+    }
+
+    /// Whether `at` stands between the values of an enumeration: in the parenthesis behind the `:` of a declaration.
+    fn in_enumeration(&self, at: usize) -> bool {
+        let open = self.opener(at).filter(|open| self.kind(*open) == Tok::LParen);
+        open.is_some_and(|open| self.kind(open.wrapping_sub(1)) == Tok::Colon)
+            && self.surroundings(at) == Surroundings::Declarations
     }
 
     /// `)`, `]`, and the `,` between two arguments.
@@ -397,6 +570,19 @@ impl Recovery<'_, '_> {
         Some(self.report.at(codes::UNEXPECTED, t.start, t.end, message).help("remove it, or write what opens it"))
     }
 
+    /// The `(` of a call: `edge CLK := pulse);`.
+    fn opening(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
+        let at = refused.at;
+        let call = self.kind(at) == Tok::Id && !self.tokens[at].first && self.kind(at.wrapping_sub(1)) == Tok::Id;
+        if !call || self.surroundings(at) != Surroundings::Statements || !self.closes_later(at..segment.end) {
+            return None;
+        }
+        let name = self.tokens[at - 1].text(self.text);
+        let message = self.missing(codes::MISSING_WORD, at, format!("`(` is missing behind `{name}`"));
+        self.insert(at, Tok::LParen);
+        Some(message.help("write `(`"))
+    }
+
     /// The `;` behind a statement or declaration.
     fn semicolon(&mut self, refused: &Refused) -> Option<Diagnostic> {
         let at = refused.at;
@@ -432,7 +618,7 @@ impl Recovery<'_, '_> {
 
 fn is_operator(kind: Tok) -> bool {
     use Tok::*;
-    matches!(kind, Assign | Attempt | Eq | Plus | Minus | Star | Rel | Op | Not | Arrow)
+    matches!(kind, Assign | Attempt | Bind | Eq | Plus | Minus | Star | Rel | Op | Not | Arrow)
 }
 
 fn is_operand_start(kind: Tok) -> bool {

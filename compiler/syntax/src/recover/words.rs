@@ -20,7 +20,21 @@ impl Recovery<'_, '_> {
             None => format!("{found} cannot stand here"),
         };
         let mut diagnostic = self.report.at(codes::UNEXPECTED, start, end, message);
-        if self.kind(refused.at) == Tok::Comma && self.surroundings(refused.at) == Surroundings::Declarations {
+        if let Some(help) = self.habit(refused.at) {
+            return diagnostic.help(help);
+        }
+        let segment = self.segment(refused.at);
+        let before = &self.tokens[segment.start.min(refused.at)..refused.at];
+        let initial = before.iter().any(|t| t.kind == Tok::Assign);
+        let next_declares = self.kind(refused.at + 2) == Tok::Colon && before.iter().any(|t| t.kind == Tok::Colon);
+        let declares = self.surroundings(refused.at) == Surroundings::Declarations;
+        if self.kind(refused.at) == Tok::Comma && declares && (initial || next_declares) {
+            diagnostic = diagnostic.help(if initial {
+                "components are initialised by name, `(x := 1, y := 2)`, arrays in brackets, `[1, 2]`"
+            } else {
+                "a declaration ends with `;`"
+            });
+        } else if self.kind(refused.at) == Tok::Comma && declares {
             diagnostic = diagnostic.help("the values of an enumeration stand in parentheses: `(Red, Green)`");
         }
         let t = self.tokens.get(refused.at);
@@ -29,6 +43,51 @@ impl Recovery<'_, '_> {
             diagnostic = diagnostic.help(format!("`{word}` is a reserved word and cannot be a name"));
         }
         diagnostic
+    }
+
+    /// What to write for a form of other languages that ends at `at`.
+    fn habit(&self, at: usize) -> Option<String> {
+        let (t, before) = (*self.tokens.get(at)?, *self.tokens.get(at.checked_sub(1)?)?);
+        let text = before.text(self.text);
+        match (before.kind, t.kind) {
+            (Tok::Int, Tok::Comma) if before.end == t.start && self.bytes(at + 1).0 == t.end => {
+                let fraction = self.tokens.get(at + 1).filter(|t| t.kind == Tok::Int)?.text(self.text);
+                Some(format!("the sign of a fraction is the point: `{text}.{fraction}`"))
+            }
+            (_, Tok::Assign) if self.in_condition(at) => Some("`:=` assigns; two values are compared with `=`".into()),
+            (_, Tok::Assign) if self.surroundings(at) == Surroundings::Statements => {
+                Some("one statement assigns to one variable; write several".into())
+            }
+            (_, Tok::Comma) if self.in_condition(at) => Some("conditions are joined with AND or OR".into()),
+            (Tok::Caret, Tok::Int | Tok::Lit | Tok::Id | Tok::LParen) => {
+                Some("`^` follows a reference; a power is written `x ** y`".into())
+            }
+            (Tok::Id, Tok::Id)
+                if self.kind(at.wrapping_sub(2)) == Tok::For && t.text(self.text).eq_ignore_ascii_case("IN") =>
+            {
+                Some(format!("write `FOR {text} := first TO last DO`"))
+            }
+            (Tok::Id, Tok::Semi) if self.kind(self.segment(at).start) == Tok::Program => {
+                Some("an instance has a name of its own: `PROGRAM P1 WITH Fast : Main;`".into())
+            }
+            (Tok::Address, Tok::Comma) => Some("the parts of an address are separated by `.`: `%QX0.1`".into()),
+            (Tok::Id, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => {
+                Some(format!("an array is declared `{text} : ARRAY [0..4] OF INT`"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether `at` stands in a condition: behind IF, ELSIF, WHILE or UNTIL, outside of any parenthesis.
+    fn in_condition(&self, at: usize) -> bool {
+        let start = self.segment(at).start;
+        let opener = self.kind(start.wrapping_sub(1));
+        let depth = self.tokens[start.min(at)..at].iter().fold(0i32, |n, t| match t.kind {
+            Tok::LParen | Tok::LBracket => n + 1,
+            Tok::RParen | Tok::RBracket => n - 1,
+            _ => n,
+        });
+        matches!(opener, Tok::If | Tok::Elsif | Tok::While | Tok::Until) && depth == 0
     }
 
     /// The token `at` as a message names it.

@@ -84,7 +84,7 @@ pub fn parse_xml(file: FileId, text: &str, profile: Profile, diags: &mut Diagnos
     };
     reader.project(root);
     let Reader { report, mut out, names, .. } = reader;
-    out.doubtful = report.doubtful(text, &names);
+    (out.doubtful, out.unnamed) = report.doubtful(text, &names);
     out
 }
 

@@ -152,7 +152,7 @@ impl<'a> Il<'_, '_, 'a> {
             Some(var) => self.c.type_of_var(var),
             None => Types::VOID,
         };
-        Operand::value(ExprKind::Call(Box::new(call)), ty, span)
+        self.c.followed_value(Operand::value(ExprKind::Call(Box::new(call)), ty, span))
     }
 
     /// What a function gave; one without a result leaves none.

@@ -354,8 +354,12 @@ impl Il<'_, '_, '_> {
         if stays || matches!(self.c.cx.defs.types.get(expr.ty), Type::Null | Type::Void | Type::Error) {
             return (Value { operand: Operand::Value { expr, ty }, ..value }, None);
         }
-        if matches!(self.c.cx.defs.types.get(expr.ty), Type::AnyString { .. } | Type::AnyArray { .. }) {
-            self.c.not_yet(value.span, "keeping the current result of this type");
+        if matches!(self.c.cx.defs.types.get(expr.ty), Type::AnyArray { .. }) {
+            let message = "an ARRAY [*] cannot be kept as current result";
+            self.c.report(
+                Diagnostic::new(codes::NOT_WRITABLE, value.span, message)
+                    .help("its size is that of the call; load its elements"),
+            );
             return (Value { operand: Operand::Error, ..value }, None);
         }
         let temp = self.c.temps.push(expr.ty);
@@ -440,7 +444,7 @@ impl Il<'_, '_, '_> {
             Operand::Value { .. } => {
                 let expr = self.c.settle(value.operand, span);
                 // Strings keep their own capacity; the assignment copies.
-                if matches!(self.c.cx.defs.types.get(ty), Type::String { .. }) { expr } else { retype(expr, ty) }
+                if self.c.is_text(ty) { expr } else { retype(expr, ty) }
             }
             constant => self.c.coerce(constant, span, ty),
         };

@@ -277,6 +277,9 @@ impl<'a> Il<'_, '_, 'a> {
             (Type::String { wide: x, capacity: m }, Type::String { wide: y, capacity: n }) if x == y => {
                 Some(if m >= n { a } else { b })
             }
+            // Room for any is room for this one.
+            (Type::AnyString { wide: x }, Type::String { wide: y, .. }) if x == y => Some(a),
+            (Type::String { wide: x, .. }, Type::AnyString { wide: y }) if x == y => Some(b),
             (Type::Null, Type::Ref { .. }) => Some(b),
             (Type::Ref { .. }, Type::Null) => Some(a),
             _ => None,

@@ -63,13 +63,13 @@ impl Printer {
             None => {}
         }
         if let Some(init) = &var.init {
-            tail.push_str(&format!(" := {}", init_text(init)));
+            tail.push_str(&initial_text(init));
         }
         self.typed(&head, &var.ty, &tail);
     }
 
     pub(super) fn type_decl(&mut self, ty: &TypeDecl) {
-        let init = ty.init.as_ref().map_or(String::new(), |i| format!(" := {}", init_text(i)));
+        let init = ty.init.as_ref().map_or(String::new(), initial_text);
         self.typed(&ty.name.text, &ty.ty, &init);
     }
 
@@ -168,21 +168,22 @@ fn type_text(ty: &TypeExpr) -> String {
             format!("{} ({}..{})", base.text, print_expr(low), print_expr(high))
         }
         TypeExprKind::Ref { kind, target } => {
-            let word = match kind {
-                RefKind::RefTo => "REF_TO",
-                RefKind::PointerTo => "POINTER TO",
-                RefKind::ReferenceTo => "REFERENCE TO",
-            };
-            format!("{word} {}", type_text(target))
+            format!("{} {}", kind.keyword(), type_text(target))
         }
         TypeExprKind::Inferred(_) => "<inferred>".into(),
         TypeExprKind::Error => "<error>".into(),
     }
 }
 
+/// What stands behind the type of a declaration.
+fn initial_text(init: &Init) -> String {
+    let sign = if matches!(init.kind, InitKind::Reference(_)) { "REF=" } else { ":=" };
+    format!(" {sign} {}", init_text(init))
+}
+
 fn init_text(init: &Init) -> String {
     match &init.kind {
-        InitKind::Expr(e) => print_expr(e),
+        InitKind::Expr(e) | InitKind::Reference(e) => print_expr(e),
         InitKind::Array { elems, .. } => {
             let elems: Vec<String> = elems.iter().map(elem_text).collect();
             format!("[{}]", elems.join(", "))
