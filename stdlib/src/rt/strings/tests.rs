@@ -211,11 +211,12 @@ fn random_texts_agree_with_lists() {
         state = state.wrapping_mul(1_103_515_245).wrapping_add(12345);
         (state >> 16) as usize % below
     };
+    type Pick = fn(&TextFns) -> &TextFn;
     type Model = fn(&[char], &[char], usize, usize) -> Vec<char>;
     fn cut(a: &[char], l: usize, p: usize) -> Option<(usize, usize)> {
         (p >= 1 && p <= a.len()).then(|| (p - 1, (p - 1 + l).min(a.len())))
     }
-    let models: [(fn(&TextFns) -> &TextFn, usize, Model); 6] = [
+    let models: [(Pick, usize, Model); 6] = [
         (|f| &f.left, 1, |a, _, l, _| a[..l.min(a.len())].to_vec()),
         (|f| &f.right, 1, |a, _, l, _| a[a.len() - l.min(a.len())..].to_vec()),
         (|f| &f.mid, 1, |a, _, l, p| cut(a, l, p).map_or(vec![], |(s, e)| a[s..e].to_vec())),
