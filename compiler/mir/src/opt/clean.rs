@@ -19,15 +19,19 @@ use index_vec::IndexVec;
 
 /// The pass.
 pub fn run(func: &mut Func) {
+    let mut first = true;
     loop {
         let mut changed = same_parameters(func);
-        dead_values(func);
+        let dead = dead_values(func);
         changed |= skip_empty_blocks(func);
         changed |= join_blocks(func);
-        compact(func);
+        if first || changed || dead {
+            compact(func);
+        }
         if !changed {
             break;
         }
+        first = false;
     }
 }
 
@@ -102,8 +106,8 @@ fn retain_unmarked(list: &mut Vec<ValueId>, marked: &[bool]) {
     });
 }
 
-/// Pure instructions and parameters whose values nothing with an effect needs.
-fn dead_values(func: &mut Func) {
+/// Pure instructions and parameters whose values nothing with an effect needs; whether there were some.
+fn dead_values(func: &mut Func) -> bool {
     /// What a live value makes live.
     #[derive(Clone, Copy)]
     enum Origin {
@@ -167,8 +171,11 @@ fn dead_values(func: &mut Func) {
         remove_parameters(func, &drop);
     }
     for block in &mut func.blocks {
+        let count = block.insts.len();
         block.insts.retain(|inst| !is_pure(inst) || inst.results().0.is_none_or(|v| live[v]));
+        any |= block.insts.len() != count;
     }
+    any
 }
 
 /// Jumps over blocks that do nothing but jump, and branches whose ways are one.

@@ -15,7 +15,7 @@
 use super::alias::Alias;
 use super::rewrite::{Constants, Replace, writes_memory};
 use crate::dominators::Dominators;
-use crate::ir::{BlockId, Func, Inst, Place, ValueId};
+use crate::ir::{Block, BlockId, Func, Inst, Place, ValueId};
 use crate::visit;
 use index_vec::IndexVec;
 use plcc_stdlib::prim::Repr;
@@ -76,7 +76,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
     for &block in &tree.order {
         let preds = &tree.preds[block];
         let mut known = start(preds, &ends);
-        let mut meetings = meetings(preds, &ends);
+        let mut meetings = meetings(&func.blocks[block], preds, &ends);
         lengths.clear();
         let insts = std::mem::take(&mut func.blocks[block].insts);
         let mut out = Vec::with_capacity(insts.len());
@@ -166,10 +166,13 @@ fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec
     known
 }
 
-/// What all ways into a block know, but differently.
-fn meetings(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec<Meeting> {
+/// What all ways into a block know, but differently, of places that it reads.
+fn meetings(block: &Block, preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec<Meeting> {
     let Some((first, rest)) = preds.split_first().filter(|(_, rest)| !rest.is_empty()) else { return Vec::new() };
     let Some(known) = &ends[*first] else { return Vec::new() };
+    let reads = |place: &Place| {
+        block.insts.iter().any(|inst| matches!(inst, Inst::Load { place: other, .. } if other == place))
+    };
     let meeting = |k: &Known| {
         let mut values = vec![k.value];
         for pred in rest {
@@ -178,7 +181,7 @@ fn meetings(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> 
         }
         values.iter().any(|v| *v != k.value).then(|| Meeting { known: k.clone(), values })
     };
-    known.iter().filter_map(meeting).collect()
+    known.iter().filter(|k| reads(&k.place)).filter_map(meeting).collect()
 }
 
 /// A new parameter of a block, with its value from each predecessor.
