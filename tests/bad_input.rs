@@ -119,6 +119,15 @@ fn an_empty_file_and_a_folder() {
     assert_eq!(done.code, 3, "{}", done.stderr);
 }
 
+/// Nothing is looked for from each POU to the end of the file: empty ones, and lists of parameters that do not end.
+#[test]
+fn many_small_units() {
+    let empty: String = (0..60_000).map(|n| format!("FUNCTION_BLOCK F{n}\nEND_FUNCTION_BLOCK\n")).collect();
+    let done = check(empty.as_bytes());
+    assert_eq!(done.code, 0, "{}", &done.stderr[..done.stderr.len().min(400)]);
+    assert_eq!(check("FUNCTION F(\n".repeat(60_000).as_bytes()).code, 1);
+}
+
 /// 8 MB here, to be quick without optimisation; the time grows with the size and nothing else.
 #[test]
 fn a_large_file() {

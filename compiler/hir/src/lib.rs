@@ -7,6 +7,7 @@
 mod access;
 pub mod address;
 pub mod app;
+mod arguments;
 pub mod body;
 mod body_check;
 mod call;
@@ -24,6 +25,7 @@ mod doubt;
 mod edges;
 mod expr;
 mod foreign_code;
+mod habits;
 pub mod init;
 mod initial;
 mod lints;

@@ -75,10 +75,10 @@ impl<'a> Checker<'_, 'a> {
         }
         let hint = similar(&name.text, self.visible_names().into_iter());
         let callable = plcc_stdlib::funcs::find(&fold(&name.text)).is_some();
-        let hint = hint.filter(|_| foreign_word(&name.text).is_none());
+        let hint = hint.filter(|_| crate::habits::foreign_word(&name.text).is_none());
         let help = match hint {
             Some(near) => format!("did you mean `{near}`?"),
-            None if let Some(help) = foreign_word(&name.text) => help.into(),
+            None if let Some(help) = crate::habits::foreign_word(&name.text) => help.into(),
             None if callable => format!("`{}` is a standard function; call it with ( )", name.text),
             None => "declare it in a VAR section".into(),
         };
@@ -138,9 +138,7 @@ impl<'a> Checker<'_, 'a> {
         {
             let ty = self.type_of_var(var);
             match self.cx.defs.types.get(ty) {
-                Type::Array { .. } | Type::AnyArray { .. } => {
-                    return format!("an element of an array is written `{}[...]`", name.text);
-                }
+                Type::Array { .. } | Type::AnyArray { .. } => return crate::habits::element_help(&name.text),
                 Type::Instance(_) => {
                     return format!("call the instance as a statement, then use its outputs: `{}.output`", name.text);
                 }
@@ -660,22 +658,6 @@ impl<'a> Checker<'_, 'a> {
 fn is_place(e: &ast::Expr) -> bool {
     use ast::ExprKind::*;
     matches!(e.kind, Name(_) | Member(..) | Index(..) | Part(..) | Deref(_) | Address(_) | Error)
-}
-
-/// What IEC 61131-3 has for a word of another language.
-fn foreign_word(word: &str) -> Option<&'static str> {
-    Some(match word.to_ascii_uppercase().as_str() {
-        "BREAK" => "a branch of a CASE ends before the next value; EXIT leaves a loop",
-        "DEFAULT" | "OTHERS" | "OTHERWISE" => "all other values of a CASE stand behind ELSE, without `:`",
-        "NIL" | "NULLPTR" | "NONE" => "a reference to nothing is NULL",
-        "THIS" | "SELF" => "inside a POU its variables are named alone",
-        word => {
-            let digits = word.strip_prefix("TIME").or(word.strip_prefix('T'))?;
-            let unit = digits.trim_start_matches(|c: char| c.is_ascii_digit());
-            let duration = unit.len() < digits.len() && matches!(unit, "D" | "H" | "M" | "S" | "MS" | "US" | "NS");
-            return duration.then_some("a duration is written with `#`: `T#5s`");
-        }
-    })
 }
 
 /// Names as a message lists them: the first dozen.

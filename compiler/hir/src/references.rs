@@ -1,5 +1,6 @@
 //! References and pointers: what they are taken of, what converts to what, arithmetic in bytes, comparison
-//! (semantics.md \[R1\] to \[R3\]); REFERENCE TO, which is followed wherever it is named (\[R5\]); and what lies in the addressable part because of them.
+//! (semantics.md \[R1\] to \[R3\]); REFERENCE TO, which is followed wherever it is named (\[R5\]); and what lies in the
+//! addressable part because of them.
 //!
 //! A reference is a 32-bit offset, in the typed form a UDINT under another type.
 

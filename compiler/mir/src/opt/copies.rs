@@ -9,7 +9,7 @@
 //! ```
 
 use super::alias::Alias;
-use super::rewrite::{Constants, writes_memory};
+use super::rewrite::{Constants, common, writes_memory};
 use crate::dominators::Dominators;
 use crate::ir::{BlockId, Func, Inst, Place};
 use index_vec::IndexVec;
@@ -45,7 +45,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let mut ends: IndexVec<BlockId, Option<Vec<Equal>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
         let mut insts = std::mem::take(&mut func.blocks[block].insts);
-        let mut known = start(&tree.preds[block], &ends);
+        let mut known = common(&tree.preds[block], &ends, |a, b| a == b);
         for inst in &mut insts {
             redirect(func, alias, &constants, inst, &known);
             if writes_memory(inst) {
@@ -66,19 +66,6 @@ pub fn run(func: &mut Func, alias: &Alias) {
         func.blocks[block].insts = insts;
         ends[block] = Some(known);
     }
-}
-
-/// What all ways into a block know.
-fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Equal>>>) -> Vec<Equal> {
-    let Some((first, rest)) = preds.split_first() else { return Vec::new() };
-    let Some(mut known) = ends[*first].clone() else { return Vec::new() };
-    for pred in rest {
-        match &ends[*pred] {
-            Some(other) => known.retain(|k| other.contains(k)),
-            None => return Vec::new(),
-        }
-    }
-    known
 }
 
 fn redirect(func: &Func, alias: &Alias, constants: &Constants, inst: &mut Inst, known: &[Equal]) {

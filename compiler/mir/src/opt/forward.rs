@@ -13,7 +13,7 @@
 //! ```
 
 use super::alias::Alias;
-use super::rewrite::{Constants, Replace, writes_memory};
+use super::rewrite::{Constants, Replace, common, writes_memory};
 use crate::dominators::Dominators;
 use crate::ir::{Block, BlockId, Func, Inst, Place, ValueId};
 use crate::visit;
@@ -75,7 +75,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
         let preds = &tree.preds[block];
-        let mut known = start(preds, &ends);
+        let mut known = common(preds, &ends, |k, o| Known { used: k.used, ..o.clone() } == *k);
         let mut meetings = meetings(&func.blocks[block], preds, &ends);
         lengths.clear();
         let insts = std::mem::take(&mut func.blocks[block].insts);
@@ -151,19 +151,6 @@ pub fn run(func: &mut Func, alias: &Alias) {
         ends[block] = Some(known);
     }
     replace.apply(func);
-}
-
-/// What is known at the start of a block.
-fn start(preds: &[BlockId], ends: &IndexVec<BlockId, Option<Vec<Known>>>) -> Vec<Known> {
-    let Some((first, rest)) = preds.split_first() else { return Vec::new() };
-    let Some(mut known) = ends[*first].clone() else { return Vec::new() };
-    for pred in rest {
-        match &ends[*pred] {
-            Some(other) => known.retain(|k| other.iter().any(|o| Known { used: k.used, ..o.clone() } == *k)),
-            None => return Vec::new(),
-        }
-    }
-    known
 }
 
 /// What all ways into a block know, but differently, of places that it reads.

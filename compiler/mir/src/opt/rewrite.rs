@@ -159,6 +159,23 @@ pub fn compact(func: &mut Func) {
     func.values = values;
 }
 
+/// What holds at the end of all predecessors of a block; nothing where one of them had not its turn yet, a way backwards.
+pub fn common<T: Clone>(
+    preds: &[BlockId],
+    ends: &IndexVec<BlockId, Option<Vec<T>>>,
+    same: impl Fn(&T, &T) -> bool,
+) -> Vec<T> {
+    let Some((first, rest)) = preds.split_first() else { return Vec::new() };
+    let Some(mut facts) = ends[*first].clone() else { return Vec::new() };
+    for pred in rest {
+        match &ends[*pred] {
+            Some(other) => facts.retain(|fact| other.iter().any(|o| same(fact, o))),
+            None => return Vec::new(),
+        }
+    }
+    facts
+}
+
 /// A jump without arguments.
 pub fn to(block: BlockId) -> Target {
     Target { block, args: Vec::new() }

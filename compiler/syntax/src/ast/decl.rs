@@ -288,6 +288,13 @@ pub enum InitKind {
     Struct(Vec<(Name, Init)>),
 }
 
+impl InitKind {
+    /// What stands before it in a declaration.
+    pub fn sign(&self) -> &'static str {
+        if matches!(self, InitKind::Reference(_)) { "REF=" } else { ":=" }
+    }
+}
+
 /// One element, or several equal groups, of an array initialiser.
 #[derive(Debug, Clone)]
 pub enum InitElem {

@@ -266,8 +266,7 @@ impl Writer<'_> {
 
     /// What stands behind the type of a declaration.
     fn initial(&self, init: &Init) -> String {
-        let sign = if matches!(init.kind, InitKind::Reference(_)) { "REF=" } else { ":=" };
-        format!(" {sign} {}", self.init(init))
+        format!(" {} {}", init.kind.sign(), self.init(init))
     }
 
     fn init(&self, init: &Init) -> String {

@@ -25,6 +25,9 @@ pub(crate) fn section_meant(word: &str) -> Option<&'static str> {
     alias.or_else(|| words.clone().find(|s| word == *s)).or_else(|| words.find(|s| is_close(&word, s)))
 }
 
+/// A list of parameters behind a name is not longer: each is looked for from its POU on.
+const MOST_PARAMETER_TOKENS: usize = 1000;
+
 impl Blocks<'_, '_> {
     /// What stands between the keyword of a POU and its first section.
     pub(super) fn pou_head(&mut self, block: Construct) {
@@ -94,8 +97,12 @@ impl Blocks<'_, '_> {
     /// `FUNCTION Add(a : INT, b : INT) : INT`: reported; the tokens of the VAR_INPUT that it means.
     fn parameters_behind_name(&mut self) -> Vec<Token> {
         let open = self.peek(0);
-        let list = self.tokens[self.at..].iter().position(|t| t.kind == Tok::RParen || t.kind == Tok::Semi);
-        let Some(close) = list.filter(|n| open.kind == Tok::LParen && self.peek(*n).kind == Tok::RParen) else {
+        if open.kind != Tok::LParen {
+            return Vec::new();
+        }
+        let mut list = self.tokens[self.at..].iter().take(MOST_PARAMETER_TOKENS);
+        let end = list.position(|t| t.kind == Tok::RParen || t.kind == Tok::Semi);
+        let Some(close) = end.filter(|n| self.peek(*n).kind == Tok::RParen) else {
             return Vec::new();
         };
         let end = self.peek(close);

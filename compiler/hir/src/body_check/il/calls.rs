@@ -3,8 +3,9 @@
 use super::Il;
 use super::current::{Current, Touches, Value};
 use super::lines::Line;
+use crate::arguments::Arguments;
 use crate::body::*;
-use crate::call::{Arguments, Target};
+use crate::call::Target;
 use crate::defs::{PouKind, Section, VarId};
 use crate::expr::Operand;
 use crate::std_call::wanted_of_argument;

@@ -162,8 +162,8 @@ impl<'n> Writer<'n, '_, '_, '_> {
                 let is_bool = !plain(source.pin);
                 self.give(source, value, is_bool);
             }
-            // The words of operators cannot begin a statement.
-            _ if ["AND", "OR", "XOR", "NOT", "MOD"].contains(&key.as_str()) => {
+            // `NOT(x)` is no statement.
+            _ if key == "NOT" => {
                 let source = Source { element: index, pin: result.unwrap_or(0) };
                 self.flush(&Writes { names: in_outs, others: user });
                 self.temporary(source, bare, false);

@@ -177,8 +177,7 @@ fn type_text(ty: &TypeExpr) -> String {
 
 /// What stands behind the type of a declaration.
 fn initial_text(init: &Init) -> String {
-    let sign = if matches!(init.kind, InitKind::Reference(_)) { "REF=" } else { ":=" };
-    format!(" {sign} {}", init_text(init))
+    format!(" {} {}", init.kind.sign(), init_text(init))
 }
 
 fn init_text(init: &Init) -> String {
