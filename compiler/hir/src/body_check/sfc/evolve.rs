@@ -6,6 +6,7 @@ use super::emit::*;
 use super::flags::Flags;
 use super::groups::{Grouped, Groups};
 use super::late::Late;
+use super::order::{self, Set};
 use crate::body::{Expr, Place, Stmt, TempId};
 use crate::chart::{Chart, Firing, StepId, TransitionId, Trigger};
 use crate::collect::charts::field;
@@ -41,27 +42,30 @@ pub(super) fn evaluate(
     late: &Late,
     out: &mut Vec<Stmt>,
 ) {
-    let mut grouped = Grouped::default();
     let mut refreshed: IndexVec<StepId, bool> = late.iter().map(|late| !late).collect();
-    for set in chart.choices() {
-        let Some(first) = set.first().map(|t| &chart.transitions[*t]) else { continue };
-        let shared = chart.shared(&set);
+    let mut items: Vec<(Option<StepId>, Vec<Stmt>, Span)> = Vec::new();
+    for Set { transitions, shared } in order::sets(&w.c.cx.defs, chart) {
+        let Some(first) = transitions.first().map(|t| &chart.transitions[*t]) else { continue };
         let mut body = Vec::new();
         if let Some(step) = shared.filter(|s| !std::mem::replace(&mut refreshed[*s], true)) {
             body = refresh(chart, state, step, groups);
         }
-        for id in &set {
+        for id in &transitions {
             condition(w, chart, state, *id, shared, &mut body);
         }
-        choose(w, chart, state, &set, &mut body);
-        match shared {
-            Some(step) => grouped.push_flagged(groups.of(step), step.index(), body, first.span),
-            _ => grouped.push(None, body),
-        }
+        choose(w, chart, state, &transitions, &mut body);
+        items.push((shared, body, first.span));
     }
     for (step, _) in refreshed.iter_enumerated().filter(|(_, done)| !**done) {
-        let body = refresh(chart, state, step, groups);
-        grouped.push_flagged(groups.of(step), step.index(), body, chart.steps[step].span);
+        let at = items.iter().position(|item| item.0.is_some_and(|s| s > step)).unwrap_or(items.len());
+        items.insert(at, (Some(step), refresh(chart, state, step, groups), chart.steps[step].span));
+    }
+    let mut grouped = Grouped::default();
+    for (step, body, span) in items {
+        match step {
+            Some(step) => grouped.push_flagged(groups.of(step), step.index(), body, span),
+            None => grouped.push(None, body),
+        }
     }
     grouped.finish(groups, steps, out);
 }

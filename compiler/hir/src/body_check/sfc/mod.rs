@@ -35,6 +35,7 @@ mod evolve;
 mod flags;
 mod groups;
 mod late;
+mod order;
 
 use crate::body::Body;
 use crate::chart::{Chart, Condition};
