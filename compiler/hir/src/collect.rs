@@ -228,7 +228,6 @@ pub(crate) fn new_var<'a>(
         address: None,
         open_address: None,
         init: Init::Default,
-        refers_to: None,
         address_taken: false,
         span,
     });

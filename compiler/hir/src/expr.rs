@@ -360,6 +360,19 @@ impl<'c, 'a> Checker<'c, 'a> {
             (_, Type::Ref { kind: RefKind::ReferenceTo, .. }) => {
                 d = d.help("a REFERENCE TO is given a variable of the type that it refers to");
             }
+            (_, Type::Ref { kind, target }) => {
+                let of = if *kind == RefKind::PointerTo { "ADR" } else { "REF" };
+                d = d.help(match &expr.kind {
+                    ExprKind::Read(place) if from == *target => {
+                        format!("`{of}({})` is the place of the variable", self.place_text(place))
+                    }
+                    _ => format!("{} is given {of}(variable), or NULL", kind.keyword()),
+                });
+            }
+            (Type::Ref { target, .. }, _) if *target == to => {
+                let held = if let ExprKind::Read(place) = &expr.kind { self.place_text(place) } else { "r".into() };
+                d = d.help(format!("`{held}^` is the variable to which it refers"));
+            }
             (Type::Instance(pou), _) => {
                 let outputs: Vec<&str> = self.cx.defs.pous[*pou]
                     .vars
@@ -536,8 +549,8 @@ impl<'c, 'a> Checker<'c, 'a> {
             return Operand::Error;
         };
         let def = &self.cx.defs.enums[id];
-        match def.values.iter().find(|(n, _, _)| n.eq_ignore_ascii_case(&value.text)) {
-            Some((_, number, _)) => Operand::value(ExprKind::Const(*number as u64 & def.base.repr().mask()), ty, span),
+        match self.cx.enum_value(id, &value.text) {
+            Some(number) => Operand::value(ExprKind::Const(number as u64 & def.base.repr().mask()), ty, span),
             None => {
                 let hint = similar(&value.text, def.values.iter().map(|(n, _, _)| n.as_str()));
                 let d = Diagnostic::new(

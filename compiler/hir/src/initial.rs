@@ -4,7 +4,8 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
 use crate::init::Init;
-use crate::types::{RefKind, Type, TypeId, Types};
+use crate::initial_references::Home;
+use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, codes};
 use plcc_syntax::ast;
 use rustc_hash::FxHashMap;
@@ -36,7 +37,7 @@ impl<'a> Cx<'a> {
             _ => Init::Default,
         };
         let written = self.var_slots[var].decl.and_then(|(_, init)| init);
-        let (ty, owner, section) = (self.defs.vars[var].ty, self.defs.vars[var].owner, self.defs.vars[var].section);
+        let (ty, section) = (self.defs.vars[var].ty, self.defs.vars[var].section);
         self.defs.vars[var].init = match written {
             Some(init) if section == Section::InOut => {
                 self.push(
@@ -45,27 +46,10 @@ impl<'a> Cx<'a> {
                 );
                 Init::Default
             }
-            Some(init) => match self.reference_in(init, ty) {
-                Some(e) => {
-                    let refers_to = Checker::constant(self, owner).initial_reference(e, ty, section);
-                    self.defs.vars[var].refers_to = refers_to.map(Box::new);
-                    Init::Default
-                }
-                None => self.initial(init, ty, owner),
-            },
+            Some(init) => self.initial(init, ty, Home::Variable(var)),
             None => from_type,
         };
         self.var_slots[var].init = State::Done(());
-    }
-
-    /// To what an initialiser lets a variable of a reference type refer, as written; `REF=` belongs to REFERENCE TO.
-    fn reference_in(&self, init: &'a ast::Init, ty: TypeId) -> Option<&'a ast::Expr> {
-        let Type::Ref { kind, .. } = *self.defs.types.get(ty) else { return None };
-        match &init.kind {
-            ast::InitKind::Expr(e) => Some(e),
-            ast::InitKind::Reference(e) if kind == RefKind::ReferenceTo => Some(e),
-            _ => None,
-        }
     }
 
     /// Initial values of all variables.
@@ -73,31 +57,35 @@ impl<'a> Cx<'a> {
         for var in self.defs.vars.indices() {
             self.var_init(var);
         }
+        self.settle_references();
     }
 
     /// An initialiser against the type of what it initialises.
-    pub fn initial(&mut self, init: &'a ast::Init, ty: TypeId, scope: Option<PouId>) -> Init {
+    pub fn initial(&mut self, init: &'a ast::Init, ty: TypeId, home: Home) -> Init {
         if ty == Types::ERROR {
             return Init::Default;
+        }
+        if let Some(reference) = self.note_reference(init, ty, home) {
+            return reference;
         }
         match self.defs.types.get(ty).clone() {
             Type::Array { dims, elem } => {
                 let count: i64 = dims.iter().map(|(l, h)| h - l + 1).product();
-                self.initial_array(init, elem, count as u32, scope)
+                self.initial_array(init, elem, count as u32, home)
             }
             Type::Struct(id) => {
                 let fields: Vec<_> = self.defs.structs[id].fields.iter().map(|f| (f.name.clone(), f.ty)).collect();
-                self.initial_fields(init, ty, &fields, scope)
+                self.initial_fields(init, ty, &fields, home)
             }
             Type::Instance(pou) => {
                 let vars = self.defs.pous[pou].vars.clone();
                 vars.iter().for_each(|v| self.var_type(*v));
                 let fields: Vec<_> =
                     vars.iter().map(|v| (self.defs.vars[*v].name.clone(), self.defs.vars[*v].ty)).collect();
-                self.initial_fields(init, ty, &fields, scope)
+                self.initial_fields(init, ty, &fields, home)
             }
             _ => match &init.kind {
-                ast::InitKind::Expr(e) => Checker::constant(self, scope).const_init(e, ty),
+                ast::InitKind::Expr(e) => Checker::constant(self, home.scope(&self.defs)).const_init(e, ty),
                 _ => {
                     self.wrong_form(init, ty);
                     Init::Default
@@ -124,11 +112,11 @@ impl<'a> Cx<'a> {
         init: &'a ast::Init,
         ty: TypeId,
         fields: &[(smol_str::SmolStr, TypeId)],
-        scope: Option<PouId>,
+        home: Home,
     ) -> Init {
         let parts = match &init.kind {
             ast::InitKind::Struct(parts) => parts,
-            ast::InitKind::Expr(e) => return Checker::constant(self, scope).const_init(e, ty),
+            ast::InitKind::Expr(e) => return Checker::constant(self, home.scope(&self.defs)).const_init(e, ty),
             ast::InitKind::Array { .. } | ast::InitKind::Reference(_) => {
                 self.wrong_form(init, ty);
                 return Init::Default;
@@ -137,7 +125,7 @@ impl<'a> Cx<'a> {
         let mut seen = FxHashMap::default();
         let mut values = Vec::new();
         for (name, value) in parts {
-            let Some(index) = fields.iter().position(|(n, _)| n.eq_ignore_ascii_case(&name.text)) else {
+            let Some(index) = self.component(ty, &name.text) else {
                 let hint = similar(&name.text, fields.iter().map(|(n, _)| n.as_str()));
                 let message = format!("{} has no component `{}`", self.type_name(ty), name.text);
                 self.push(
@@ -153,21 +141,21 @@ impl<'a> Cx<'a> {
                 );
                 continue;
             }
-            let value = self.initial(value, fields[index].1, scope);
+            let value = self.initial(value, fields[index].1, home);
             values.push((index as u32, value));
         }
         Init::Fields(values)
     }
 
-    fn initial_array(&mut self, init: &'a ast::Init, elem: TypeId, count: u32, scope: Option<PouId>) -> Init {
+    fn initial_array(&mut self, init: &'a ast::Init, elem: TypeId, count: u32, home: Home) -> Init {
         let ast::InitKind::Array { elems, .. } = &init.kind else {
             // One value without brackets for an array of one, as Ed. 2 writes it.
             return match &init.kind {
                 ast::InitKind::Expr(e) if matches!(e.kind, ast::ExprKind::Name(_) | ast::ExprKind::Member(..)) => {
                     let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
-                    Checker::constant(self, scope).const_init(e, ty)
+                    Checker::constant(self, home.scope(&self.defs)).const_init(e, ty)
                 }
-                ast::InitKind::Expr(_) if count == 1 => Init::Array(vec![(1, self.initial(init, elem, scope))]),
+                ast::InitKind::Expr(_) if count == 1 => Init::Array(vec![(1, self.initial(init, elem, home))]),
                 _ => {
                     let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
                     self.wrong_form(init, ty);
@@ -190,11 +178,11 @@ impl<'a> Cx<'a> {
         for part in elems {
             match part {
                 ast::InitElem::One(value) => {
-                    let value = self.initial(value, elem, scope);
+                    let value = self.initial(value, elem, home);
                     push(&mut runs, 1, value);
                 }
                 ast::InitElem::Repeat(times, values) => {
-                    let Some(n) = self.const_integer(times, scope) else { continue };
+                    let Some(n) = self.const_integer(times, home.scope(&self.defs)) else { continue };
                     if n < 0 || n > i128::from(u32::MAX) {
                         self.push(
                             Diagnostic::new(codes::BAD_INITIALISER, times.span, format!("{n} is no repetition count"))
@@ -202,7 +190,7 @@ impl<'a> Cx<'a> {
                         );
                         continue;
                     }
-                    let group: Vec<Init> = values.iter().map(|v| self.initial(v, elem, scope)).collect();
+                    let group: Vec<Init> = values.iter().map(|v| self.initial(v, elem, home)).collect();
                     match group.as_slice() {
                         [] => push(&mut runs, n as u32, Init::Default),
                         [one] => push(&mut runs, n as u32, one.clone()),

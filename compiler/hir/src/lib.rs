@@ -28,6 +28,7 @@ mod foreign_code;
 mod habits;
 pub mod init;
 mod initial;
+mod initial_references;
 mod lints;
 mod literal;
 pub mod network;

@@ -225,8 +225,9 @@ impl<'a> Checker<'_, 'a> {
         match self.cx.defs.types.get(base.ty).clone() {
             Type::Error => None,
             Type::Struct(id) => {
+                let found = self.cx.component(base.ty, &name.text);
                 let def = &self.cx.defs.structs[id];
-                let Some(index) = def.fields.iter().position(|f| f.name.eq_ignore_ascii_case(&name.text)) else {
+                let Some(index) = found else {
                     let hint = similar(&name.text, def.fields.iter().map(|f| f.name.as_str()));
                     let d = Diagnostic::new(
                         codes::UNKNOWN_MEMBER,
@@ -236,7 +237,10 @@ impl<'a> Checker<'_, 'a> {
                     .also(def.span, "declared here")
                     .help(match hint {
                         Some(near) => format!("did you mean `{near}`?"),
-                        None => format!("its components are {}", list(def.fields.iter().map(|f| f.name.as_str()))),
+                        None => format!(
+                            "its components are {}",
+                            list(def.fields.iter().map(|f| f.name.as_str()).filter(|n| !n.starts_with('$')))
+                        ),
                     });
                     self.report(d);
                     return None;

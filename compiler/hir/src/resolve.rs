@@ -5,6 +5,7 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
 use crate::init::Init;
+use crate::initial_references::Home;
 use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
@@ -169,7 +170,7 @@ impl<'a> Cx<'a> {
         let decl = self.type_slots[slot].decl;
         let mut resolved = self.resolve_new(&decl.ty, None, &decl.name.text, Some(slot));
         if let Some(init) = &decl.init {
-            resolved.init = self.initial(init, resolved.ty, None);
+            resolved.init = self.initial(init, resolved.ty, Home::Outside(None));
         }
         // A cycle that was found below has reported itself; the type stays usable.
         self.type_slots[slot].state = State::Done(resolved.clone());
@@ -268,7 +269,7 @@ impl<'a> Cx<'a> {
                 }
                 let resolved = self.resolve_type(&decl.ty, scope, &format!("{name}.{}", field.text));
                 let init = match &decl.init {
-                    Some(init) => self.initial(init, resolved.ty, scope),
+                    Some(init) => self.initial(init, resolved.ty, Home::Outside(scope)),
                     None => resolved.init,
                 };
                 fields.push(Field { name: field.text.clone(), ty: resolved.ty, init, span: field.span });

@@ -62,7 +62,6 @@ impl Test {
             address: None,
             open_address: None,
             init: Init::Default,
-            refers_to: None,
             address_taken: false,
             span: SPAN,
         });
