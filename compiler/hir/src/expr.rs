@@ -526,7 +526,7 @@ impl<'c, 'a> Checker<'c, 'a> {
     /// `Color#Red`.
     fn qualified(&mut self, ty: &ast::Name, value: &ast::Name, span: Span) -> Operand {
         let Some(&slot) = self.cx.types.get(&fold(&ty.text)) else {
-            let hint = similar(&ty.text, self.cx.types.keys().map(|k| k.as_str()));
+            let hint = similar(&ty.text, self.cx.type_slots.iter().map(|t| t.decl.name.text.as_str()));
             self.report(
                 Diagnostic::new(codes::UNKNOWN_TYPE, ty.span, format!("there is no type `{}`", ty.text))
                     .help_if(hint.map(|h| format!("did you mean `{h}`?"))),

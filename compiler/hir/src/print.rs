@@ -282,7 +282,9 @@ impl Printer<'_> {
             let convert = o.convert.map(|(a, b)| format!("{}_TO_{} ", a.name(), b.name())).unwrap_or_default();
             format!("{not}{} => {convert}{}", var(o.output), self.place(&o.target))
         }));
-        parts.extend(call.eno.iter().map(|p| format!("ENO => {}", self.place(p))));
+        parts.extend(
+            call.eno.iter().map(|e| format!("{}ENO => {}", if e.negated { "NOT " } else { "" }, self.place(&e.target))),
+        );
         format!("{callee}({})", parts.join(", "))
     }
 
@@ -293,7 +295,9 @@ impl Printer<'_> {
         before.extend(call.arguments.iter().map(|(t, e)| format!("t{} := {}", t.index(), self.expr(e))));
         let mut after: Vec<String> = Vec::new();
         after.extend(call.outputs.iter().map(|(p, e)| format!("{} => {}", self.expr(e), self.place(p))));
-        after.extend(call.eno.iter().map(|p| format!("ENO => {}", self.place(p))));
+        after.extend(
+            call.eno.iter().map(|e| format!("{}ENO => {}", if e.negated { "NOT " } else { "" }, self.place(&e.target))),
+        );
         let value = call.value.as_ref().map(|v| self.expr(v)).unwrap_or_default();
         format!("[{}] {value} [{}]", before.join("; "), after.join("; "))
     }

@@ -129,8 +129,9 @@ impl<'a> Cx<'a> {
             return plain(Types::elem(elem));
         }
         let standard = plcc_stdlib::elem::ALL.iter().map(|e| e.name()).chain(["STRING", "WSTRING"]);
-        let pous = self.pous.iter().filter(|(_, p)| self.defs.pous[**p].kind == PouKind::FunctionBlock);
-        let names = self.types.keys().chain(pous.map(|(n, _)| n)).map(|n| n.as_str()).chain(standard);
+        let pous = self.pous.values().map(|p| &self.defs.pous[*p]).filter(|p| p.kind == PouKind::FunctionBlock);
+        let types = self.type_slots.iter().map(|t| t.decl.name.text.as_str());
+        let names = types.chain(pous.map(|p| p.name.as_str())).chain(standard);
         let hint = iec_name(&key).map(str::to_string).or_else(|| similar(&name.text, names));
         self.push(Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text)).help(
             match hint {

@@ -339,7 +339,10 @@ impl Lexer<'_, '_, '_> {
         self.report.push(
             self.report
                 .at(codes::FOREIGN_OPERATOR, start, end, format!("`{written}` is not an operator of IEC 61131-3"))
-                .help(format!("write `{meant}`")),
+                .help(match written {
+                    "==" => "write `=` to compare, `:=` to assign".into(),
+                    _ => format!("write `{meant}`"),
+                }),
         );
         self.push(kind, length);
     }
@@ -402,6 +405,9 @@ impl Lexer<'_, '_, '_> {
                 self.report.at(codes::BAD_CHARACTER, start, end, format!("the character {shown} has no meaning here"));
             if c == '\0' {
                 message = message.help("this does not look like a text file");
+            }
+            if c == '~' {
+                message = message.help("the opposite is written NOT");
             }
             if c == '?' {
                 message = message.help("a choice is written with IF, or as SEL(condition, if_false, if_true)");

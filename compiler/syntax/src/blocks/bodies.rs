@@ -233,6 +233,9 @@ impl Blocks<'_, '_> {
                     self.at += 1;
                     return;
                 }
+                if self.head_of_c() {
+                    return;
+                }
                 if let Some(block) = Construct::statement(kind) {
                     // A condition of a transition has no statements.
                     return self.open(block, kind);

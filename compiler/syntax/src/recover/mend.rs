@@ -363,8 +363,16 @@ impl Recovery<'_, '_> {
         let kind = self.kind(at);
         if refused.wants_type() && (is_boundary(kind) || matches!(kind, Tok::Assign | Tok::Comma | Tok::RParen)) {
             let message = self.missing(codes::MISSING_OPERAND, at, "a type is missing here");
+            let gap = self.text.get(self.end_before(at) as usize..self.bytes(at).0 as usize);
+            let braces = gap.filter(|gap| gap.contains('{'));
+            // The values that were meant are not known.
+            let words = braces.unwrap_or("").split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+            words.filter(|word| !word.is_empty()).for_each(|word| self.report.lose(word));
             self.insert(at, Tok::Bad);
-            return Some(message.help("write for example `: INT`"));
+            return Some(message.help(match braces {
+                Some(_) => "braces hold pragmas; the values of an enumeration stand in parentheses: `(Red, Green)`",
+                None => "write for example `: INT`",
+            }));
         }
         if refused.wants("OF") && matches!(kind, Tok::Id | Tok::Array | Tok::RefWord | Tok::LParen | Tok::Struct) {
             let message = self.missing(codes::MISSING_WORD, at, "OF is missing before the type of the elements");
@@ -545,7 +553,7 @@ impl Recovery<'_, '_> {
     }
 
     /// The parenthesis or bracket that is open before `at`.
-    fn opener(&self, at: usize) -> Option<usize> {
+    pub(super) fn opener(&self, at: usize) -> Option<usize> {
         let mut depth = 0;
         for (i, t) in self.tokens[..at.min(self.tokens.len())].iter().enumerate().rev() {
             match t.kind {
