@@ -342,12 +342,8 @@ impl<'c, 'a> Checker<'c, 'a> {
             }
             _ if self.is_text(from) || self.is_text(to) => d = d.help_if(self.text_help(&expr, from, to)),
             (Type::Enum(_), Type::Enum(_)) => d = d.help("values of different enumerations do not mix"),
-            (Type::Enum(id), Type::Elem(b)) => {
-                let base = self.cx.defs.enums[*id].base;
-                d = d.help(format!(
-                    "an enumeration is no number; {}(...) converts it",
-                    rules::conversion_name(base, *b)
-                ));
+            (Type::Enum(_), Type::Elem(b)) => {
+                d = d.help(format!("an enumeration is no number; TO_{}(...) converts it", b.name()));
             }
             (Type::Elem(_), Type::Enum(id)) => {
                 d = d.help(format!("use one of its values: {}", self.value_names(*id)));
@@ -373,6 +369,14 @@ impl<'c, 'a> Checker<'c, 'a> {
                 let held = if let ExprKind::Read(place) = &expr.kind { self.place_text(place) } else { "r".into() };
                 d = d.help(format!("`{held}^` is the variable to which it refers"));
             }
+            (_, Type::Instance(pou)) => {
+                let of = &self.cx.defs.pous[*pou];
+                d = d.help(format!("an instance of {} is called, it takes no value: `name(input := value)`", of.name));
+            }
+            (Type::Array { .. }, _) => d = d.help("an element of an array is written with its index: `a[1]`"),
+            (_, Type::Array { .. }) => d = d.help("the elements are assigned one by one, for example in a FOR"),
+            (_, Type::Struct(_)) => d = d.help("the components are assigned one by one: `s.a := 1;`"),
+            (Type::Struct(_), _) => d = d.help("a component is written with a point: `s.a`"),
             (Type::Instance(pou), _) => {
                 let outputs: Vec<&str> = self.cx.defs.pous[*pou]
                     .vars

@@ -76,7 +76,7 @@ fn configure<'a>(cx: &mut Cx<'a>, decl: &'a ast::VarDecl, app: &mut Application)
         let init = cx.initial(init, ty, Home::Outside(None));
         program_of(app, program).initial.push((path.clone(), init));
     }
-    let Some((text, span)) = &decl.at else { return };
+    let Some((text, span)) = decl.at.as_ref().filter(|(text, _)| !text.is_empty()) else { return };
     let address = match crate::address::parse(text) {
         Ok(address) => address,
         Err(message) => return cx.push(Diagnostic::new(codes::BAD_ADDRESS, *span, format!("`{text}`: {message}"))),

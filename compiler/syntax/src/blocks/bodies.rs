@@ -339,9 +339,8 @@ impl Blocks<'_, '_> {
         }
         let upper = text.to_ascii_uppercase();
         let words = [(If, Then), (For, To), (While, Do), (Case, Of), (Repeat, Until), (Elsif, Then)];
-        let Some((word, partner)) = words.into_iter().find(|(word, _)| is_close(&upper, word.describe())) else {
-            return false;
-        };
+        let close = words.into_iter().find(|(word, _)| is_close(&upper, word.describe()));
+        let Some((word, partner)) = close.or((upper == "SWITCH").then_some((Case, Of))) else { return false };
         // `name(...)` is a call and `name` on a line of its own a statement without `;`, unless the partner word follows.
         let until = |t: &&Token| word == Repeat || t.kind != Semi;
         let mut rest = self.tokens[self.at + 1..].iter().take_while(until);

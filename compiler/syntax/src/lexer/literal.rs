@@ -187,6 +187,13 @@ impl Lexer<'_, '_, '_> {
             message.help(format!("a duration is written `T#{text}`"))
         } else if text.starts_with('0') && tail.starts_with(['x', 'X']) {
             message.help(format!("a hexadecimal number is written `16#{}`", &tail[1..]))
+        } else if text.starts_with('0') && tail.starts_with(['b', 'B']) {
+            message.help(format!("a binary number is written `2#{}`", &tail[1..]))
+        } else if matches!(tail, "f" | "F" | "L" | "u" | "U" | "l" | "d") {
+            message.help(format!(
+                "the type of a literal stands before it: `{}`, `DINT#5`, `LREAL#1.5`",
+                &text[..end - self.at]
+            ))
         } else {
             message.help("names start with a letter or an underline; numbers are `12`, `16#FF`, `1.5`, `1e6`")
         };

@@ -50,6 +50,10 @@ impl Recovery<'_, '_> {
         let (t, before) = (*self.tokens.get(at)?, *self.tokens.get(at.checked_sub(1)?)?);
         let text = before.text(self.text);
         match (before.kind, t.kind) {
+            (Tok::Int, Tok::Comma) if self.list_in_parens(at) => Some(
+                "the elements of an array stand in brackets: `[1, 2]`; components have names: `(x := 1, y := 2)`"
+                    .into(),
+            ),
             (Tok::Int, Tok::Comma) if before.end == t.start && self.bytes(at + 1).0 == t.end => {
                 let fraction = self.tokens.get(at + 1).filter(|t| t.kind == Tok::Int)?.text(self.text);
                 Some(format!("the sign of a fraction is the point: `{text}.{fraction}`"))
@@ -70,8 +74,13 @@ impl Recovery<'_, '_> {
             (Tok::Id, Tok::Semi) if self.kind(self.segment(at).start) == Tok::Program => {
                 Some("an instance has a name of its own: `PROGRAM P1 WITH Fast : Main;`".into())
             }
-            (_, Tok::Not) => Some("NOT stands before its operand: `NOT x`".into()),
             (Tok::DotDot, Tok::Dot) => Some("`..` has two points".into()),
+            (Tok::Int, Tok::Dot) => Some(format!("a point is followed by digits: `{text}.0`")),
+            (_, Tok::Dot) if self.kind(at + 1) == Tok::Int && self.bytes(at + 1).0 == t.end => {
+                let fraction = self.tokens[at + 1].text(self.text);
+                Some(format!("digits stand before the point, too: `0.{fraction}`"))
+            }
+            (_, Tok::Not) => Some("NOT stands before its operand: `NOT x`".into()),
             (_, Tok::Id) if t.text(self.text).eq_ignore_ascii_case("DIV") => {
                 Some("the quotient of integers is `x / y`, without fraction; the remainder `x MOD y`".into())
             }
@@ -110,6 +119,13 @@ impl Recovery<'_, '_> {
             _ if before.kind == Tok::Id => Some(format!("a subrange is written `{word} (0..100)`")),
             _ => None,
         }
+    }
+
+    /// Whether `at` stands in a parenthesis behind the `:=` of a declaration.
+    fn list_in_parens(&self, at: usize) -> bool {
+        let open = self.opener(at).filter(|open| self.kind(*open) == Tok::LParen);
+        open.is_some_and(|open| self.kind(open.wrapping_sub(1)) == Tok::Assign)
+            && self.surroundings(at) == Surroundings::Declarations
     }
 
     /// Whether `at` stands behind the `:=` of a statement.
