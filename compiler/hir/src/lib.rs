@@ -42,6 +42,7 @@ mod resources;
 pub mod rules;
 pub mod shape;
 mod sizes;
+pub mod specials;
 mod std_args;
 mod std_bcd;
 mod std_call;
