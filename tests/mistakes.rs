@@ -631,6 +631,18 @@ const MISTAKES: &[Mistake] = &[
         code: "E0106", at: "$FF", help: "`16#FF`" },
     Mistake { what: "units of a duration in the wrong order", from: "T#2s", to: "T#5ms2s",
         code: "E0336", at: "T#5ms2s", help: "T#1d2h" },
+    Mistake { what: "missing END_REPEAT before the next statement", from: "UNTIL share >= 50\nEND_REPEAT;", to: "UNTIL share >= 50",
+        code: "E0101", at: "REPEAT\n", help: "END_REPEAT" },
+    Mistake { what: "`:` for THEN", from: "IF delay.Q THEN", to: "IF delay.Q:",
+        code: "E0115", at: "IF delay.Q:", help: "THEN" },
+    Mistake { what: "`:` for DO", from: "WHILE total > 1000 DO", to: "WHILE total > 1000:",
+        code: "E0115", at: "WHILE total > 1000:", help: "DO" },
+    Mistake { what: "BEGIN and END", from: "IF delay.Q THEN\n      mode := Run;\n    END_IF;", to: "IF delay.Q THEN BEGIN\n      mode := Run;\n    END;\n    END_IF;",
+        code: "E0117", at: "IF delay.Q THEN BEGIN", help: "END_IF" },
+    Mistake { what: "BEGIN before the body", from: "delay(IN := start", to: "BEGIN\ndelay(IN := start",
+        code: "E0117", at: "BEGIN\n", help: "remove" },
+    Mistake { what: "`;` between arguments", from: "pulse := start, preset := 10, total := total", to: "pulse := start; preset := 10; total := total",
+        code: "E0117", at: "counter(pulse := start;", help: "`,`" },
 ];
 
 /// Where `part` stands in `text`, once.

@@ -232,6 +232,8 @@ struct Blocks<'a, 'd> {
     bare_ends: Vec<Token>,
     /// A `;` behind an instruction of IL was reported: once per file.
     told_semicolon: bool,
+    /// BEGINs that were reported and whose END may follow.
+    begun: u32,
     /// How often the file may still be searched for what explains a mistake.
     looks: u32,
 }
@@ -256,6 +258,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
             next_end_var: 0,
             bare_ends: Vec::new(),
             told_semicolon: false,
+            begun: 0,
             looks: MAX_LOOKS,
         }
     }

@@ -178,6 +178,10 @@ impl Blocks<'_, '_> {
             self.at += 1;
             return;
         }
+        // A statement on the next line: the condition behind UNTIL has ended, and END_REPEAT is missing.
+        if Construct::statement(t.kind).is_some() && t.first && self.behind_until() {
+            return self.close_above(self.stack.len() - 1, t);
+        }
         match t.kind {
             Tok::Id => return self.name_in_statement(t),
             Tok::Else => self.branch(t, |f| matches!(f.block, Construct::If | Construct::Case)),
@@ -252,7 +256,39 @@ impl Blocks<'_, '_> {
         open && (1..).map(|n| self.peek(n).kind).find(|k| ends(*k)) == Some(Tok::Colon)
     }
 
+    /// Whether the condition behind an UNTIL is being read.
+    fn behind_until(&self) -> bool {
+        self.stack.last().is_some_and(|f| f.block == Construct::Repeat && f.has_else) && self.last() != Tok::Until
+    }
+
+    /// BEGIN and END, which other languages put around statements: reported once, and left out.
+    fn begin_or_end(&mut self, t: Token) -> bool {
+        let next = self.peek(1);
+        let alone = next.first || matches!(next.kind, Tok::Semi | Tok::StartItem);
+        if self.is(0, "BEGIN") && alone {
+            let message = "no BEGIN stands before statements";
+            self.report.push(
+                self.report
+                    .at(codes::UNEXPECTED, t.start, t.end, message)
+                    .help("remove BEGIN and its END; END_IF, END_FOR and the like end a construct"),
+            );
+            self.begun += 1;
+        } else if self.is(0, "END") && alone && self.begun > 0 {
+            self.begun -= 1;
+        } else {
+            return false;
+        }
+        self.at += 1;
+        if self.peek(0).kind == Tok::Semi {
+            self.at += 1;
+        }
+        true
+    }
+
     fn name_in_statement(&mut self, t: Token) {
+        if self.at_statement() && self.begin_or_end(t) {
+            return;
+        }
         if t.first || self.at_statement() {
             if self.action_here() {
                 return self.next_action();
