@@ -9,7 +9,7 @@ use crate::layout::{Layout, Slot};
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
 use plcc_hir::elem_of;
-use plcc_hir::{Defs, Init, ReferenceId, Section, Type, TypeId, VarId};
+use plcc_hir::{Defs, Init, ReferenceId, Section, Type, TypeId, Var, VarId};
 use std::collections::BTreeMap;
 
 /// The register value with which a scalar starts; `None` for what is no scalar.
@@ -133,6 +133,10 @@ fn write(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, home: Home, out:
                     None => Home { at: home.at + at, instance: home.at },
                 };
                 let at = at as usize;
+                if let Some(flag) = flag(defs, layout, var) {
+                    out[at + flag as usize] = 1;
+                    continue;
+                }
                 let to = &mut out[at..at + layout.size(defs, var.ty) as usize];
                 write(defs, layout, var.ty, explicit.unwrap_or(&var.init), home, to);
             }
@@ -148,6 +152,17 @@ fn explicit(init: &Init, count: usize) -> Vec<Option<&Init>> {
         given[*n as usize] = Some(value);
     }
     given
+}
+
+/// Of an initial step: how far behind its first byte its flag lies. Nothing else of a step has an initial value, and the flag
+/// lies outside of its variable ([`StepFlag`](plcc_hir::StepFlag)).
+fn flag(defs: &Defs, layout: &Layout, var: &Var) -> Option<u32> {
+    match &defs.types[var.ty] {
+        Type::Struct(id) if defs.structs[*id].flag.is_some() && !fields(&var.init).is_empty() => {
+            Some(layout.field(*id, 0))
+        }
+        _ => None,
+    }
 }
 
 fn fields(init: &Init) -> &[(u32, Init)] {
@@ -298,10 +313,13 @@ impl Writer<'_> {
         }
         match self.layout.offset(id, instance) {
             Some((offset, Some(bit))) => self.image.set_bit(offset, bit),
-            Some((offset, None)) => {
-                let home = Home { at: offset, instance };
-                self.image.write(offset, &bytes(self.defs, self.layout, var.ty, &var.init, home));
-            }
+            Some((offset, None)) => match flag(self.defs, self.layout, var) {
+                Some(flag) => self.image.write(offset + flag, &[1]),
+                None => {
+                    let home = Home { at: offset, instance };
+                    self.image.write(offset, &bytes(self.defs, self.layout, var.ty, &var.init, home));
+                }
+            },
             None => {}
         }
     }
