@@ -3,7 +3,7 @@
 use crate::collect::charts::ChartOptions;
 use crate::defs::*;
 use crate::init::Init;
-use crate::initial_references::Noted;
+use crate::initial_references::{Home, Noted};
 use crate::types::{Type, TypeId, Types};
 use index_vec::IndexVec;
 use plcc_diag::{Diagnostic, Diagnostics, FileId, Span};
@@ -100,6 +100,8 @@ pub(crate) struct Cx<'a> {
     pub enum_values: FxHashMap<SmolStr, Vec<(EnumId, i128)>>,
     /// Initialisers of references, for `Defs::references`.
     pub noted: IndexVec<ReferenceId, Noted<'a>>,
+    /// Those that also are part of what another initial value copies.
+    pub copied_references: Vec<(ReferenceId, &'a ast::Expr, Home)>,
     pub var_slots: IndexVec<VarId, VarSlot<'a>>,
     pub pou_slots: IndexVec<PouId, PouSlot<'a>>,
     /// Where the components of a structure and the variables of an instance stand, by name.
@@ -146,6 +148,7 @@ impl<'a> Cx<'a> {
             type_slots: Vec::new(),
             enum_values: FxHashMap::default(),
             noted: IndexVec::new(),
+            copied_references: Vec::new(),
             var_slots: IndexVec::new(),
             pou_slots: IndexVec::new(),
             components: FxHashMap::default(),

@@ -94,6 +94,13 @@ impl<'a> Cx<'a> {
         );
     }
 
+    /// The initial value of another variable, for the whole of an array, a structure or an instance.
+    fn copied_init(&mut self, e: &'a ast::Expr, ty: TypeId, home: Home) -> Init {
+        let init = Checker::constant(self, home.scope(&self.defs)).const_init(e, ty);
+        self.note_copies(&init, e, home);
+        init
+    }
+
     /// The type of a component of a structure or instance, by its index.
     fn component_type(&mut self, ty: TypeId, index: usize) -> TypeId {
         match *self.defs.types.get(ty) {
@@ -136,7 +143,7 @@ impl<'a> Cx<'a> {
         let parts = match &init.kind {
             ast::InitKind::Struct(parts) => parts,
             ast::InitKind::Expr(e) if self.compared_component(e, ty) => return Init::Default,
-            ast::InitKind::Expr(e) => return Checker::constant(self, home.scope(&self.defs)).const_init(e, ty),
+            ast::InitKind::Expr(e) => return self.copied_init(e, ty, home),
             ast::InitKind::Array { .. } | ast::InitKind::Reference(_) => {
                 self.wrong_form(init, ty);
                 return Init::Default;
@@ -193,7 +200,7 @@ impl<'a> Cx<'a> {
             return match &init.kind {
                 ast::InitKind::Expr(e) if matches!(e.kind, ast::ExprKind::Name(_) | ast::ExprKind::Member(..)) => {
                     let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
-                    Checker::constant(self, home.scope(&self.defs)).const_init(e, ty)
+                    self.copied_init(e, ty, home)
                 }
                 ast::InitKind::Expr(_) if count == 1 => Init::Array(vec![(1, self.initial(init, elem, home))]),
                 _ => {

@@ -57,10 +57,28 @@ impl<'a> Cx<'a> {
         Some(Init::Reference(self.defs.references.push(None)))
     }
 
+    /// Notes references that are part of what is copied from the variable `e`.
+    pub fn note_copies(&mut self, init: &Init, e: &'a ast::Expr, home: Home) {
+        let mut found = Vec::new();
+        init.references(&mut found);
+        self.copied_references.extend(found.into_iter().map(|id| (id, e, home)));
+    }
+
     /// Finds to what all noted references refer.
     pub fn settle_references(&mut self) {
         for id in self.defs.references.indices() {
             self.settle_reference(id);
+        }
+        for (id, e, home) in std::mem::take(&mut self.copied_references) {
+            let Some(place) = self.defs.references[id].clone() else { continue };
+            let scope = home.scope(&self.defs);
+            let mut c = Checker::constant(self, scope);
+            // Behind a point another instance may begin, and what it refers to lies in that one.
+            let global = matches!(place.root, Root::Var(var) if c.cx.defs.vars[var].section == Section::Global);
+            if !(global || matches!(e.kind, ast::ExprKind::Name(_)) && c.stays_in_place(&place, home)) {
+                let ty = c.cx.noted[id].ty;
+                c.not_initial(e.span, ty, home);
+            }
         }
     }
 
