@@ -20,6 +20,7 @@ mod references;
 mod std_call;
 mod stmt;
 mod string;
+mod tails;
 mod task;
 mod text;
 mod text_ops;

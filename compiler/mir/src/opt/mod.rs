@@ -9,6 +9,7 @@
 mod aggregates;
 mod algebra;
 mod alias;
+mod appends;
 mod clean;
 mod copies;
 mod dead_stores;
@@ -17,8 +18,10 @@ mod fold;
 mod forward;
 mod frames;
 mod hoist;
+mod in_place;
 mod induction;
 mod inline;
+mod lengths;
 mod loops;
 mod promote;
 mod proven;
@@ -70,6 +73,9 @@ pub fn passes() -> &'static [Pass] {
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
         FRAMES, TIDY, FORWARD, FOLD, COPIES, DEAD_STORES,
+        Pass { name: "in_place", run: |p| with_facts(p, in_place::run) },
+        Pass { name: "lengths", run: |p| with_facts(p, lengths::run) },
+        Pass { name: "appends", run: |p| each(p, appends::run) },
         SELECT, FOLD, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, FOLD,
         Pass { name: "promote", run: |p| with_facts(p, promote::run) }, LOOP_FOLD, LOOP_FORWARD, LOOP_FOLD,
