@@ -189,6 +189,10 @@ fn the_generator_uses_every_form() {
         "FOR ",
         ".act();",
         "s := t;",
+        "rest := DELETE(rest, FIND(rest, 'a'), 1);",
+        ":= LEFT(rest, FIND(rest, 'b') - 1);",
+        ":= LEFT(rest, 2) = ",
+        ":= LEN(rest);",
     ] {
         assert!(text.contains(form), "no program uses `{form}`");
     }

@@ -299,6 +299,7 @@ fn put<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Range<usize>) -> usize
 }
 
 /// The same for the first characters of a string, whose end need not be known.
+#[inline(always)]
 fn put_first<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Text, most: usize) -> usize {
     let Some((to, n, room)) = behind::<U>(mem, dst, n) else { return 0 };
     let all = extent::<U>(mem, src);
@@ -538,6 +539,12 @@ const LONGEST_NUMBER: usize = 1024;
 
 fn read<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [elem]: [u64; 1]) -> u64 {
     let Some(elem) = Elem::from_code(elem as u8) else { return 0 };
+    if U::BYTES == 1
+        && (elem.is_integer() || elem.is_bits())
+        && let Some(number) = prefix::short_decimal(&mem[extent::<U>(mem, a)])
+    {
+        return number as u64 & elem.repr().mask();
+    }
     let a = &mem[characters::<U>(mem, a)];
     if elem.family() == Family::Char {
         let unit = if a.is_empty() { 0 } else { U::get(a, 0) };

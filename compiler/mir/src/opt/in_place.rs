@@ -153,7 +153,9 @@ impl Look<'_> {
         match inst {
             Inst::Const { .. } | Inst::Prim { .. } | Inst::CallRt { .. } => return Role::None,
             Inst::Check { .. } | Inst::Poll { .. } if to.base != Base::Frame => return Role::Obstacle,
-            Inst::Call { .. } | Inst::AddressOf { place: Place { base: Base::Frame, .. }, .. } => return Role::Obstacle,
+            Inst::Call { .. } | Inst::AddressOf { place: Place { base: Base::Frame, .. }, .. } => {
+                return Role::Obstacle;
+            }
             Inst::Zero { dst, bytes: all } | Inst::Copy { dst, bytes: all, .. }
                 if dst == from && i64::from(*all) == *bytes && !self.touches(inst, to, true) =>
             {

@@ -21,7 +21,6 @@ mod hoist;
 mod in_place;
 mod induction;
 mod inline;
-mod lengths;
 mod loops;
 mod promote;
 mod proven;
@@ -31,6 +30,7 @@ mod rotate;
 mod scale;
 mod select;
 mod ssa;
+mod texts;
 mod unroll;
 
 use crate::ir::{Func, Program};
@@ -57,6 +57,8 @@ pub fn passes() -> &'static [Pass] {
     const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
     const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
     const COPIES: Pass = Pass { name: "copies", run: |p| with_facts(p, copies::run) };
+    const TEXTS: Pass = Pass { name: "texts", run: |p| with_facts(p, texts::run) };
+    const IN_PLACE: Pass = Pass { name: "in_place", run: |p| with_facts(p, in_place::run) };
     const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
     const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
@@ -73,8 +75,8 @@ pub fn passes() -> &'static [Pass] {
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
         FRAMES, TIDY, FORWARD, FOLD, COPIES, DEAD_STORES,
-        Pass { name: "in_place", run: |p| with_facts(p, in_place::run) },
-        Pass { name: "lengths", run: |p| with_facts(p, lengths::run) },
+        IN_PLACE,
+        TEXTS,
         Pass { name: "appends", run: |p| each(p, appends::run) },
         SELECT, FOLD, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, FOLD,
@@ -82,7 +84,7 @@ pub fn passes() -> &'static [Pass] {
         RANGES, FOLD, HOIST, LOOP_FORWARD, LOOP_DEAD_STORES, LOOP_FOLD,
         // Counters first: of a loop that was repeated they are not seen any more.
         SELECT, FOLD, INDUCTION, FOLD,
-        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, COPIES, DEAD_STORES, FOLD,
+        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, COPIES, IN_PLACE, TEXTS, DEAD_STORES, FOLD,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, FOLD, INDUCTION, LOOP_FOLD, HOIST,

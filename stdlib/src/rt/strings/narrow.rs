@@ -92,6 +92,7 @@ pub fn before_zero(mem: &[u8], range: Range<usize>) -> usize {
 
 /// Where the first of two bytes is, one of which is 0; the length of the slice if none is.
 #[cold]
+#[inline(never)]
 fn slow(bytes: &[u8], wanted: u8) -> usize {
     bytes.iter().position(|b| *b == 0 || *b == wanted).unwrap_or(bytes.len())
 }
@@ -119,6 +120,7 @@ pub fn compare(mem: &[u8], a: Range<usize>, b: Range<usize>) -> Ordering {
 }
 
 #[cold]
+#[inline(never)]
 fn slow_compare(a: &[u8], b: &[u8]) -> Ordering {
     a[..slow(a, 0)].cmp(&b[..slow(b, 0)])
 }
@@ -129,19 +131,25 @@ pub fn find_unit(mem: &[u8], range: Range<usize>, unit: u8) -> Option<usize> {
     let mut at = range.start;
     while at < range.end {
         let Some(bytes) = window(mem, at) else {
-            let rest = &mem[at..range.end];
-            let found = slow(rest, unit);
-            return (found < rest.len() && rest[found] != 0).then_some(at - range.start + found);
+            return slow_find_unit(&mem[at..range.end], unit).map(|found| at - range.start + found);
         };
-        let ends = marks::of(bytes, 0);
-        let stop = marks::of(bytes, unit) | ends;
+        let units = marks::of(bytes, unit);
+        let stop = units | marks::of(bytes, 0);
         if stop != 0 {
             let found = at + stop.trailing_zeros() as usize;
-            return (found < range.end && mem[found] == unit).then_some(found - range.start);
+            let is_unit = units & stop & stop.wrapping_neg() != 0;
+            return (found < range.end && is_unit).then_some(found - range.start);
         }
         at += STEP;
     }
     None
+}
+
+#[cold]
+#[inline(never)]
+fn slow_find_unit(text: &[u8], unit: u8) -> Option<usize> {
+    let found = slow(text, unit);
+    (found < text.len() && text[found] != 0).then_some(found)
 }
 
 /// Where a text that is not empty begins in another; both end at their first 0 or with their range.
@@ -187,6 +195,7 @@ pub fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
 }
 
 #[cold]
+#[inline(never)]
 fn slow_advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
     let mut done = 0;
     while done < limit && mem[from + done] != 0 {
