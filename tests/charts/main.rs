@@ -11,7 +11,7 @@ mod structure;
 
 use generate::{Form, Stimulus};
 use model::{ActionKind, Chart, Model, Time};
-use plcc_hir::{Checked, Profile};
+use plcc_hir::{Checked, Profile, Type};
 use plcc_mir::interp::Interp;
 use plcc_mir::layout::{Layout, Slot};
 use plcc_tests::memory::{bytes_of, region};
@@ -67,7 +67,8 @@ fn batch(seed: u64, count: u64, built: bool) -> Batch {
 
 /// Where the variables of a chart lie.
 struct Places {
-    steps: Vec<u32>,
+    /// Of each step `X` and `T`.
+    steps: Vec<[u32; 2]>,
     actions: Vec<u32>,
     log: u32,
 }
@@ -93,8 +94,19 @@ impl Places {
             pou = format!("P{n}_Seq");
         }
         let own = |name: String| variable(&pou, &name, instance);
+        let step = |name: String| -> [u32; 2] {
+            let def = defs.pous.iter().find(|p| p.name == pou);
+            let var = def.and_then(|p| p.vars.iter().find(|v| defs.vars[**v].name == name));
+            let Some(Type::Struct(id)) = var.map(|v| &defs.types[defs.vars[*v].ty]) else { panic!("no step {name}") };
+            let field = |wanted: &str| {
+                let index = defs.structs[*id].fields.iter().position(|f| f.name == wanted);
+                layout.field(*id, index.unwrap_or_else(|| panic!("no {wanted}")) as u32)
+            };
+            let at = own(name);
+            [at + field("X"), at + field("T")]
+        };
         Places {
-            steps: (0..chart.steps.len()).map(|s| own(format!("S{s}"))).collect(),
+            steps: (0..chart.steps.len()).map(|s| step(format!("S{s}"))).collect(),
             actions: (0..chart.actions.len())
                 .map(|a| match chart.actions[a] {
                     ActionKind::Block => own(format!("n{a}")),
@@ -117,10 +129,9 @@ impl Places {
                 found.push(format!("{name} is {got}, the model says {wanted}"));
             }
         };
-        for (s, at) in self.steps.iter().enumerate() {
-            // STEP: X, then T on the next multiple of eight.
-            compare(format!("S{s}.X"), u64::from(memory[*at as usize]), u64::from(model.x[s]));
-            compare(format!("S{s}.T"), word(at + 8), model.t[s] as u64);
+        for (s, [x, t]) in self.steps.iter().enumerate() {
+            compare(format!("S{s}.X"), u64::from(memory[*x as usize]), u64::from(model.x[s]));
+            compare(format!("S{s}.T"), word(*t), model.t[s] as u64);
         }
         for (a, at) in self.actions.iter().enumerate() {
             match chart.actions[a] {

@@ -89,6 +89,35 @@ struct Tails {
     ways: usize,
 }
 
+/// A loaded value of 16 bits in 64.
+#[derive(Debug, Clone, Copy)]
+enum Extended {
+    /// With copies of its sign.
+    Signed(Value),
+    /// With zeros.
+    Zero(Value),
+}
+
+/// By value of 16 bits: somewhere it is extended with its sign, nowhere with zeros.
+fn signed_uses(func: &Func) -> IndexVec<ValueId, bool> {
+    let mut signed: IndexVec<ValueId, bool> = IndexVec::from_vec(vec![false; func.values.len()]);
+    let mut zero = Vec::new();
+    for block in &func.blocks {
+        for inst in &block.insts {
+            match inst {
+                Inst::Prim { op: PrimOp::Sext(_), repr: Repr::I16, args, .. } => signed[args[0]] = true,
+                Inst::Prim { op: PrimOp::Zext(_), repr: Repr::I16, args, .. } => zero.push(args[0]),
+                _ => {}
+            }
+        }
+        if let Term::Switch { value, .. } = &block.term {
+            zero.push(*value);
+        }
+    }
+    zero.into_iter().for_each(|id| signed[id] = false);
+    signed
+}
+
 /// The walk over one function.
 pub struct Translator<'a, 'f> {
     pub(crate) env: &'a Env<'a>,
@@ -103,6 +132,10 @@ pub struct Translator<'a, 'f> {
     values: IndexVec<ValueId, Option<Value>>,
     /// Register values of constants.
     pub(crate) constants: IndexVec<ValueId, Option<u64>>,
+    /// See [`signed_uses`].
+    signed: IndexVec<ValueId, bool>,
+    /// Of values of 16 bits that were loaded: the same in 64 bits.
+    extended: FxHashMap<ValueId, Extended>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
     rt_callees: FxHashMap<&'static str, FuncRef>,
@@ -133,6 +166,8 @@ impl<'a, 'f> Translator<'a, 'f> {
             region_bytes: env.program.region_bytes,
             values: IndexVec::from_vec(vec![None; func.values.len()]),
             constants: IndexVec::from_vec(vec![None; func.values.len()]),
+            signed: signed_uses(func),
+            extended: FxHashMap::default(),
             blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
             callees: FxHashMap::default(),
             rt_callees: FxHashMap::default(),
@@ -273,6 +308,13 @@ impl<'a, 'f> Translator<'a, 'f> {
                 let value = self.prim(*op, *repr, args);
                 self.values[*dst] = Some(value);
             }
+            Inst::Load { dst, place, .. } if self.func.values[*dst] == Repr::I16 => {
+                let signed = self.signed[*dst];
+                let wide = self.load_extended(place, signed);
+                self.extended.insert(*dst, if signed { Extended::Signed(wide) } else { Extended::Zero(wide) });
+                let value = self.b.ins().ireduce(types::I32, wide);
+                self.values[*dst] = Some(value);
+            }
             Inst::Load { dst, place, normalise } => {
                 let value = self.load(self.func.values[*dst], place, *normalise);
                 self.values[*dst] = Some(value);
@@ -327,6 +369,10 @@ impl<'a, 'f> Translator<'a, 'f> {
                 let args = [self.value(args[0]), self.carried(args[1]), self.carried(args[2])];
                 prim::emit(&mut self.b, op, Repr::I32, &args)
             }
+            (PrimOp::Sext(to) | PrimOp::Zext(to), Repr::I16) if self.extended(args[0], op).is_some() => {
+                let Some(wide) = self.extended(args[0], op) else { plcc_diag::bug!("no extended value") };
+                if to == Repr::I64 { wide } else { self.b.ins().ireduce(clif_type(to), wide) }
+            }
             (PrimOp::Wrap(Repr::I16), Repr::I32) => self.value(args[0]),
             (PrimOp::Wrap(Repr::I16), Repr::I64) => {
                 let value = self.value(args[0]);
@@ -336,6 +382,16 @@ impl<'a, 'f> Translator<'a, 'f> {
                 let args = self.values(args);
                 prim::emit(&mut self.b, op, repr, &args)
             }
+        }
+    }
+
+    /// A value that was loaded as this extension gives it.
+    fn extended(&self, id: ValueId, op: PrimOp) -> Option<Value> {
+        match (self.extended.get(&id).copied(), op) {
+            (Some(Extended::Signed(wide)), PrimOp::Sext(_)) | (Some(Extended::Zero(wide)), PrimOp::Zext(_)) => {
+                Some(wide)
+            }
+            _ => None,
         }
     }
 
@@ -370,9 +426,9 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn switch(&mut self, value: ValueId, cases: &[(u64, Target)], default: &Target) {
-        let selector = self.value(value);
         let (other, other_args) = (self.target_block(default.block), self.args(default));
         if cases.len() <= CHAIN_LABELS {
+            let selector = self.value(value);
             for (label, target) in cases {
                 let label = prim::constant(&mut self.b, self.func.values[value], *label);
                 let (block, args) = (self.target_block(target.block), self.args(target));
@@ -392,6 +448,10 @@ impl<'a, 'f> Translator<'a, 'f> {
             switch.set_entry(u128::from(*label), block);
         }
         let otherwise = self.edge(default, &mut edges);
+        let selector = match self.extended(value, PrimOp::Zext(Repr::I32)) {
+            Some(wide) => self.b.ins().ireduce(types::I32, wide),
+            None => self.value(value),
+        };
         switch.emit(&mut self.b, selector, otherwise);
         for (edge, block, args) in edges {
             self.b.switch_to_block(edge);

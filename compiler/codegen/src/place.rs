@@ -75,6 +75,16 @@ impl Translator<'_, '_> {
         }
     }
 
+    /// Reads 16 bits into 64.
+    pub fn load_extended(&mut self, place: &Place, signed: bool) -> Value {
+        let (base, offset) = self.address(place);
+        if signed {
+            self.b.ins().sload16(types::I64, memory(), base, offset)
+        } else {
+            self.b.ins().uload16(types::I64, memory(), base, offset)
+        }
+    }
+
     /// Writes a scalar.
     pub fn store(&mut self, place: &Place, value: Value) {
         let (base, offset) = self.address(place);

@@ -153,7 +153,7 @@ impl Place {
             // The bounds are variables.
             Step::OpenIndex(indices, _) => indices.iter().any(|i| i.value.calls()),
             Step::Character { index, .. } => index.calls(),
-            Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
+            Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) | Step::Flags(_) => false,
         })
     }
 }
@@ -280,7 +280,7 @@ impl Place {
                     };
                     format!("[{}]", indices.iter().map(constant).collect::<Option<Vec<_>>>()?.join(","))
                 }
-                Step::Deref | Step::OpenIndex(..) | Step::Character { .. } => return None,
+                Step::Deref | Step::OpenIndex(..) | Step::Character { .. } | Step::Flags(_) => return None,
             };
         }
         Some(text)
@@ -313,6 +313,9 @@ pub enum Step {
     Bit(u8),
     /// Byte, word or double word n of a wider bit string: the elementary type and its number.
     Part(Elem, u8),
+    /// From a BOOL on those that lie side by side, as one bit string of this type: not 0 if one of them is TRUE. Only charts
+    /// look at their flags so.
+    Flags(Elem),
 }
 
 /// A subscript of an array whose bounds its caller knows; all LINT.

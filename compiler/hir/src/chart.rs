@@ -263,4 +263,11 @@ impl Chart {
         sets.sort();
         sets
     }
+
+    /// The step that all transitions of a set take: while it is not active, none of them is possible.
+    pub fn shared(&self, set: &[TransitionId]) -> Option<StepId> {
+        let from = |id: &TransitionId| &self.transitions[*id].from;
+        let first = set.first()?;
+        from(first).iter().copied().find(|s| set.iter().all(|t| from(t).contains(s)))
+    }
 }

@@ -111,8 +111,6 @@ pub(crate) struct Cx<'a> {
     pub edges: FxHashMap<VarId, crate::edges::EdgeInput>,
     /// The variables of steps; a step whose name was declared before has none.
     pub steps: FxHashMap<*const ast::Step, VarId>,
-    /// The type of these variables, once there is one.
-    pub step_type: Option<TypeId>,
     /// Files with mistakes of syntax: what is not there may only not have been read.
     pub half_read: FxHashSet<FileId>,
     /// Names that were reported as unknown, by POU: one message each.
@@ -150,7 +148,6 @@ impl<'a> Cx<'a> {
             mentioned: Default::default(),
             edges: FxHashMap::default(),
             steps: FxHashMap::default(),
-            step_type: None,
             half_read: FxHashSet::default(),
             reported: FxHashSet::default(),
             reported_order: Vec::new(),

@@ -176,8 +176,20 @@ pub struct StructDef {
     pub union: bool,
     /// In order of declaration.
     pub fields: Vec<Field>,
+    /// It is the type of a step: its first field lies beside those of the other steps of its chart.
+    pub flag: Option<StepFlag>,
     /// Where.
     pub span: Span,
+}
+
+/// Where the flag of a step lies. The variables of the steps of one chart stand side by side in their instance; behind the last
+/// one stand the flags of all, a byte each, so that a chart looks at several of them at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StepFlag {
+    /// Which step of the chart, from 0.
+    pub index: u32,
+    /// How many the chart has.
+    pub steps: u32,
 }
 
 /// A component of a structure.

@@ -634,6 +634,7 @@ impl<'a> Checker<'_, 'a> {
                 },
                 Step::Bit(n) => text = format!("{text}.{n}"),
                 Step::Part(elem, n) => text = format!("{text}.%{}{n}", &elem.name()[..1]),
+                Step::Flags(_) => text.push_str(".."),
             }
         }
         text

@@ -334,6 +334,9 @@ impl Printer<'_> {
                 Step::Part(elem, n) => {
                     let _ = write!(text, ".%{}{n}", &elem.name()[..1]);
                 }
+                Step::Flags(word) => {
+                    let _ = write!(text, "..{}", word.name());
+                }
             }
         }
         text

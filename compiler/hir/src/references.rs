@@ -262,7 +262,8 @@ impl<'a> Checker<'_, 'a> {
                 Step::Field(_) => true,
                 Step::Member(var) => self.cx.defs.vars[*var].section != Section::InOut,
                 Step::Index(indices, _) => indices.iter().all(|i| matches!(i.kind, ExprKind::Const(_))),
-                Step::OpenIndex(..) | Step::Character { .. } | Step::Deref | Step::Bit(_) | Step::Part(..) => false,
+                Step::OpenIndex(..) | Step::Character { .. } | Step::Deref => false,
+                Step::Bit(_) | Step::Part(..) | Step::Flags(_) => false,
             })
     }
 

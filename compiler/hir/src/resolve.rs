@@ -241,7 +241,13 @@ impl<'a> Cx<'a> {
         name: &str,
         slot: Option<usize>,
     ) -> Resolved {
-        let id = self.defs.structs.push(StructDef { name: name.into(), union, fields: Vec::new(), span: te.span });
+        let id = self.defs.structs.push(StructDef {
+            name: name.into(),
+            union,
+            fields: Vec::new(),
+            flag: None,
+            span: te.span,
+        });
         let ty = self.defs.types.intern(Type::Struct(id));
         if let Some(slot) = slot {
             self.type_slots[slot].early = Some(ty);

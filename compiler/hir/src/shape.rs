@@ -10,6 +10,9 @@ use index_vec::IndexVec;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::prim::Repr;
 
+/// So many flags of steps are looked at at once; the bytes behind those of the last steps of a chart are 0.
+pub const FLAGS_AT_ONCE: u64 = 8;
+
 /// No type is taken to be larger; the sum of two such sizes still fits.
 const HUGE: u64 = 1 << 60;
 
@@ -184,9 +187,13 @@ impl Shapes {
         let def = &defs.structs[id];
         let mut shape = Shape::EMPTY;
         let mut offsets = Vec::with_capacity(def.fields.len());
-        for field in &def.fields {
+        for (n, field) in def.fields.iter().enumerate() {
             let part = self.work_out(defs, field.ty);
-            if def.union {
+            if def.flag.is_some() && n == 0 {
+                // Where it lies is known when the size of the rest is.
+                offsets.push(0);
+                shape.merge(part);
+            } else if def.union {
                 shape.bytes = shape.bytes.max(part.bytes);
                 shape.merge(part);
                 offsets.push(0);
@@ -195,7 +202,15 @@ impl Shapes {
             }
             shape.initialised |= !self.init_is_zero(defs, field.ty, &field.init);
         }
-        let shape = shape.padded();
+        let mut shape = shape.padded();
+        if let Some(flag) = def.flag {
+            let (index, steps) = (u64::from(flag.index), u64::from(flag.steps));
+            offsets[0] = (steps - index) * shape.bytes + index;
+            if index + 1 == steps {
+                // Room for all of them, and words of flags end in it.
+                shape.bytes += steps.next_multiple_of(FLAGS_AT_ONCE);
+            }
+        }
         self.structs[id] = Some((shape, offsets));
         shape
     }

@@ -122,7 +122,7 @@ pub fn place(p: &Place, how: Use, v: &mut impl Visitor) {
                 }
             }
             Step::Character { index, .. } => expr(index, v),
-            Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) => {}
+            Step::Field(_) | Step::Member(_) | Step::Deref | Step::Bit(_) | Step::Part(..) | Step::Flags(_) => {}
         }
     }
 }

@@ -24,6 +24,7 @@ pub(crate) fn check_all(cx: &mut Cx) {
         };
         cx.defs.bodies.push(body);
     }
+    sfc::write_all(cx);
 }
 
 /// Gives the variables that bring values to the next cycle the types of these values: they are read before they are assigned.

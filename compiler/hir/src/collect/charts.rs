@@ -8,7 +8,7 @@ use crate::chart::{Firing, Trigger};
 use crate::cx::*;
 use crate::defs::*;
 use crate::init::Init;
-use crate::types::{Type, Types};
+use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_syntax::ast;
@@ -39,7 +39,7 @@ pub(crate) struct ChartOptions {
 
 /// Whether a variable is that of a step.
 pub(crate) fn is_step(cx: &Cx, var: VarId) -> bool {
-    cx.step_type.is_some_and(|ty| cx.defs.vars[var].ty == ty)
+    matches!(cx.defs.types[cx.defs.vars[var].ty], Type::Struct(id) if cx.defs.structs[id].flag.is_some())
 }
 
 /// Declares the steps of a body, if it is a chart.
@@ -49,27 +49,29 @@ pub(crate) fn declare_steps<'a>(cx: &mut Cx<'a>, owner: PouId, body: &'a ast::Bo
         // The body is refused.
         return;
     }
-    for element in &chart.elements {
-        if let ast::SfcElement::Step(step) = element {
-            declare_step(cx, owner, step);
-        }
+    let steps = chart.elements.iter().filter_map(|e| match e {
+        ast::SfcElement::Step(step) => declare_step(cx, owner, step),
+        ast::SfcElement::Transition(_) => None,
+    });
+    let structs: Vec<StructId> = steps.collect();
+    for (index, id) in structs.iter().enumerate() {
+        cx.defs.structs[*id].flag = Some(StepFlag { index: index as u32, steps: structs.len() as u32 });
     }
 }
 
-fn declare_step<'a>(cx: &mut Cx<'a>, owner: PouId, step: &'a ast::Step) {
+/// Declares one step; gives the structure of its variable.
+fn declare_step<'a>(cx: &mut Cx<'a>, owner: PouId, step: &'a ast::Step) -> Option<StructId> {
     let key = fold(&step.name.text);
     match cx.pou_slots[owner].scope.get(&key).copied() {
         Some(Local::Var(first) | Local::External(first)) => {
-            return duplicate(cx, "step", &step.name, cx.defs.vars[first].span);
+            duplicate(cx, "step", &step.name, cx.defs.vars[first].span);
+            return None;
         }
-        Some(Local::Missing) => return,
+        Some(Local::Missing) => return None,
         // See `declare_action`.
         Some(Local::Action(_)) | None => {}
     }
-    let ty = match cx.step_type {
-        Some(ty) => ty,
-        None => step_type(cx, step.name.span),
-    };
+    let (id, ty) = step_type(cx, step.name.span);
     let var = new_var(cx, step.name.text.clone(), step.name.span, Section::Local, Some(owner), None);
     cx.var_slots[var].ty = State::Done(Init::Default);
     cx.var_slots[var].init = State::Done(());
@@ -82,16 +84,18 @@ fn declare_step<'a>(cx: &mut Cx<'a>, owner: PouId, step: &'a ast::Step) {
     // A step is used by being there.
     cx.mentioned.borrow_mut().insert(var);
     cx.steps.insert(step, var);
+    Some(id)
 }
 
-fn step_type(cx: &mut Cx, span: Span) -> crate::types::TypeId {
+/// A structure for one step.
+fn step_type(cx: &mut Cx, span: Span) -> (StructId, TypeId) {
     let make =
         |(name, elem): (&str, Elem)| Field { name: name.into(), ty: Types::elem(elem), init: Init::Default, span };
     let fields = field::ALL.into_iter().map(make).collect();
-    let id = cx.defs.structs.push(StructDef { name: "STEP".into(), union: false, fields, span });
-    let ty = cx.defs.types.intern(Type::Struct(id));
-    cx.step_type = Some(ty);
-    ty
+    // Which of how many is known when all are declared.
+    let flag = Some(StepFlag { index: 0, steps: 1 });
+    let id = cx.defs.structs.push(StructDef { name: "STEP".into(), union: false, fields, flag, span });
+    (id, cx.defs.types.intern(Type::Struct(id)))
 }
 
 /// Reads the pragmas between the declarations of a POU and its first step.

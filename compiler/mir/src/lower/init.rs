@@ -8,7 +8,7 @@ use crate::layout::{Layout, Slot};
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
 use plcc_hir::elem_of;
-use plcc_hir::{Defs, Init, Section, Type, TypeId, VarId};
+use plcc_hir::{Defs, Init, Section, Type, TypeId, Var, VarId};
 use std::collections::BTreeMap;
 
 /// The register value with which a scalar starts; `None` for what is no scalar.
@@ -98,11 +98,26 @@ fn write(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, out: &mut [u8]) 
                 };
                 let explicit = fields(init).iter().rfind(|(k, _)| *k as usize == n).map(|(_, i)| i);
                 let at = at as usize;
+                if let Some(flag) = flag(defs, layout, var) {
+                    out[at + flag as usize] = 1;
+                    continue;
+                }
                 let to = &mut out[at..at + layout.size(defs, var.ty) as usize];
                 write(defs, layout, var.ty, explicit.unwrap_or(&var.init), to);
             }
         }
         _ => bug!("an initial value {init:?} for {:?}", defs.types[ty]),
+    }
+}
+
+/// Of an initial step: how far behind its first byte its flag lies. Nothing else of a step has an initial value, and the flag
+/// lies outside of its variable ([`StepFlag`](plcc_hir::StepFlag)).
+fn flag(defs: &Defs, layout: &Layout, var: &Var) -> Option<u32> {
+    match &defs.types[var.ty] {
+        Type::Struct(id) if defs.structs[*id].flag.is_some() && !fields(&var.init).is_empty() => {
+            Some(layout.field(*id, 0))
+        }
+        _ => None,
     }
 }
 
@@ -241,9 +256,10 @@ impl Writer<'_> {
         }
         match self.layout.offset(id, instance) {
             Some((offset, Some(bit))) => self.image.set_bit(offset, bit),
-            Some((offset, None)) => {
-                self.image.write(offset, &bytes(self.defs, self.layout, var.ty, &var.init));
-            }
+            Some((offset, None)) => match flag(self.defs, self.layout, var) {
+                Some(flag) => self.image.write(offset + flag, &[1]),
+                None => self.image.write(offset, &bytes(self.defs, self.layout, var.ty, &var.init)),
+            },
             None => {}
         }
     }

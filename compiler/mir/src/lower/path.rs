@@ -89,6 +89,10 @@ fn append(defs: &Defs, text: &mut String, ty: Option<TypeId>, step: &Step) -> Op
             let _ = write!(text, ".{n}");
             None
         }
+        Step::Flags(word) => {
+            text.push_str("..");
+            Some(Types::elem(*word))
+        }
         Step::Part(elem, n) => {
             let _ = write!(text, ".%{}{n}", &elem.name()[..1]);
             Some(Types::elem(*elem))

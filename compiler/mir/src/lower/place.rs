@@ -212,6 +212,10 @@ impl FuncLower<'_, '_> {
                 *access = self.follow(reference, target, name, place);
             }
             Step::Bit(bit) => self.part(access, place, n, Elem::Bool, u32::from(*bit)),
+            Step::Flags(word) => {
+                access.ty = Types::elem(*word);
+                access.normalise = false;
+            }
             Step::Part(elem, number) => self.part(access, place, n, *elem, u32::from(*number) * elem.bits()),
         }
     }

@@ -540,6 +540,7 @@ fn retain_ranges_leave_out_references() {
     let id = test.defs.structs.push(StructDef {
         name: "S".into(),
         union: false,
+        flag: None,
         fields: vec![field("a", dint), field("r", reference), field("b", dint)],
         span: SPAN,
     });

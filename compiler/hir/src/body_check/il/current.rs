@@ -102,7 +102,7 @@ fn is_simple(expr: &Expr) -> bool {
 /// Whether reaching a place needs no check and reads no other variable.
 pub(super) fn is_plain(place: &Place) -> bool {
     let steps = place.steps.iter().all(|s| match s {
-        Step::Field(_) | Step::Member(_) | Step::Bit(_) | Step::Part(..) => true,
+        Step::Field(_) | Step::Member(_) | Step::Bit(_) | Step::Part(..) | Step::Flags(_) => true,
         Step::Index(indices, _) => indices.iter().all(|i| matches!(i.kind, ExprKind::Const(_))),
         Step::OpenIndex(..) | Step::Character { .. } | Step::Deref => false,
     });

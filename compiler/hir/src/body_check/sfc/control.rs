@@ -2,33 +2,80 @@
 //! `stdlib/blocks/ACTION_CONTROL.st`; here are the instances, who feeds them, and when they may rest.
 
 use super::emit::*;
+use super::flags::Flags;
 use super::groups::{Group, Grouped, Groups};
 use crate::body::{Callee, Expr, Place, Stmt};
 use crate::chart::{ActionId, ActionKind, Association, Chart, Qualifier, StepId};
 use crate::defs::Profile;
+use crate::init::Init;
 use crate::types::Types;
+use index_vec::IndexVec;
 use plcc_diag::Span;
 
+/// By step: flags of the action controls that must be called when it becomes active.
+pub(super) type Wakes = IndexVec<StepId, Vec<Place>>;
+
 /// The statements of steps (2) and (3) of the evolution (\[F2\]).
-pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, out: &mut Vec<Stmt>) {
+pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, steps: &Flags, out: &mut Vec<Stmt>) -> Wakes {
     let mut users: Vec<Vec<User>> = chart.actions.iter().map(|_| Vec::new()).collect();
     for (step, s) in chart.steps.iter_enumerated() {
         for association in &s.associations {
             users[association.action.index()].push(User { step, association });
         }
     }
+    let mut awake = Awake::new(w, chart, users.iter().filter(|users| !is_wire(users)).count());
     let mut running = Vec::new();
     let mut controls = Grouped::default();
     for (id, users) in chart.actions.indices().zip(&users) {
-        running.push(control(w, chart, id, users, groups, &mut controls));
+        running.push(control(w, chart, id, users, groups, &mut awake, &mut controls));
     }
-    controls.finish(groups, out);
+    controls.finish(groups, &awake.flags, out);
     for (action, running) in chart.actions.iter().zip(&running) {
         if let ActionKind::Variable(place) = &action.kind {
             out.push(assign(place.clone(), running.clone(), place.span));
         }
     }
-    bodies(w, chart, &users, &running, groups, out);
+    bodies(w, chart, &users, &running, groups, steps, out);
+    awake.wakes
+}
+
+/// Which action controls must be called. Such a control rests while none of its steps is active, nothing is stored, and the
+/// last scan has seen that: then no part of it would change. A step that becomes active wakes it.
+struct Awake {
+    flags: Flags,
+    /// The next one that is free.
+    next: usize,
+    places: Vec<Place>,
+    wakes: Wakes,
+}
+
+impl Awake {
+    fn new(w: &mut Writer, chart: &Chart, controls: usize) -> Self {
+        let bytes = controls.next_multiple_of(4);
+        let mut places = Vec::new();
+        if controls > 0 {
+            // In the first call all are looked at.
+            let init = Init::Array(vec![(controls as u32, Init::Scalar(1))]);
+            places = w.flags("awake", bytes, init, chart.span.before());
+        }
+        let wakes = chart.steps.iter().map(|_| Vec::new()).collect();
+        Self { flags: Flags::new(places.clone(), bytes), next: 0, places, wakes }
+    }
+
+    fn take(&mut self, users: &[User]) -> (usize, Place) {
+        let number = self.next;
+        self.next += 1;
+        let place = self.places[number].clone();
+        for user in users {
+            self.wakes[user.step].push(place.clone());
+        }
+        (number, place)
+    }
+}
+
+/// Not stored, not timed, not reset: the action control of such an action is a wire.
+fn is_wire(users: &[User]) -> bool {
+    users.iter().all(|u| u.association.qualifier == Qualifier::N)
 }
 
 /// A step that acts on the action in question.
@@ -38,13 +85,20 @@ struct User<'c> {
 }
 
 /// Decides whether an action runs; gives the expression that says so.
-fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], groups: &Groups, out: &mut Grouped) -> Expr {
+fn control(
+    w: &mut Writer,
+    chart: &Chart,
+    id: ActionId,
+    users: &[User],
+    groups: &Groups,
+    awake: &mut Awake,
+    out: &mut Grouped,
+) -> Expr {
     let span = span_of(chart, users);
     let flags = |q: Qualifier| -> Vec<Expr> {
         users.iter().filter(|u| u.association.qualifier == q).map(|u| active(chart, u.step)).collect()
     };
-    // Not stored, not timed, not reset: the action control of such an action is a wire.
-    if users.iter().all(|u| u.association.qualifier == Qualifier::N) {
+    if is_wire(users) {
         return any(&flags(Qualifier::N), span);
     }
     let name = format!("a{}", id.index() + 1);
@@ -73,24 +127,20 @@ fn control(w: &mut Writer, chart: &Chart, id: ActionId, users: &[User], groups: 
         }
     }
     body.push(w.call(&control, inputs, span));
-    // It rests while none of its steps is active, nothing is stored, and the last scan has seen that: then no part of it
-    // would change. Until then it keeps the group of its steps awake, if they are of one.
-    let group = group_of(groups, users);
-    let awake = variable(w.hidden(&format!("{name}awake"), Types::elem(BOOL), span), Types::elem(BOOL), span);
-    let steps: Vec<Expr> = users.iter().map(|u| active(chart, u.step)).collect();
     let runs = w.output(&control, "Q");
-    let mut why = steps.clone();
+    // While it is awake, it keeps the group of its steps awake, if they are of one.
+    let group = group_of(groups, users);
+    let (number, awake) = awake.take(users);
+    let mut why: Vec<Expr> = users.iter().map(|u| active(chart, u.step)).collect();
     why.push(runs.clone());
     why.append(&mut stored);
     body.push(assign(awake.clone(), any(&why, span), span));
     if group.is_some() {
         let mut wake = Vec::new();
         groups.wake(group, span, &mut wake);
-        body.push(when(read(awake.clone()), wake, span));
+        body.push(when(read(awake), wake, span));
     }
-    let mut needed = steps;
-    needed.push(read(awake));
-    out.push(group, [when(any(&needed, span), body, span)]);
+    out.push_flagged(group, number, body, span);
     runs
 }
 
@@ -114,7 +164,15 @@ fn part(qualifier: Qualifier) -> Option<&'static str> {
 }
 
 /// Calls the bodies of active actions, in profile codesys first once more those that ran and do not any more (\[F10\]).
-fn bodies(w: &mut Writer, chart: &Chart, users: &[Vec<User>], running: &[Expr], groups: &Groups, out: &mut Vec<Stmt>) {
+fn bodies(
+    w: &mut Writer,
+    chart: &Chart,
+    users: &[Vec<User>],
+    running: &[Expr],
+    groups: &Groups,
+    steps: &Flags,
+    out: &mut Vec<Stmt>,
+) {
     let final_scan = w.c.cx.defs.pous[w.owner].profile == Profile::Codesys;
     let (mut last, mut now) = (Grouped::default(), Grouped::default());
     for (id, action) in chart.actions.iter_enumerated() {
@@ -133,8 +191,8 @@ fn bodies(w: &mut Writer, chart: &Chart, users: &[Vec<User>], running: &[Expr], 
         last.push(group, [when(ended, vec![assign(ran.clone(), constant(0, BOOL, span), span), run()], span)]);
         now.push(group, [when(running.clone(), vec![assign(ran, constant(1, BOOL, span), span), run()], span)]);
     }
-    last.finish(groups, out);
-    now.finish(groups, out);
+    last.finish(groups, steps, out);
+    now.finish(groups, steps, out);
 }
 
 /// Where an action is named first.

@@ -1,8 +1,12 @@
 //! The transitions of a chart: which conditions are evaluated, which transition is chosen, what it changes.
 //! Steps (4), (5) and (6) of the evolution (semantics.md \[F2\]).
 
+use super::control::Wakes;
 use super::emit::*;
+use super::flags::Flags;
 use super::groups::{Grouped, Groups};
+use super::late::Late;
+use super::order::{self, Set};
 use crate::body::{Expr, Place, Stmt, TempId};
 use crate::chart::{Chart, Firing, StepId, TransitionId, Trigger};
 use crate::collect::charts::field;
@@ -28,27 +32,42 @@ pub(super) struct State {
     pub merged: Option<Place>,
 }
 
-/// Steps (4) and (5).
-pub(super) fn evaluate(w: &mut Writer, chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<Stmt>) {
-    let mut grouped = Grouped::default();
-    for set in chart.choices() {
-        // While a step that all of them take is not active, none is possible.
-        let transitions = || set.iter().map(|t| &chart.transitions[*t]);
-        let first = transitions().next();
-        let shared = first.and_then(|t| t.from.iter().copied().find(|s| transitions().all(|t| t.from.contains(s))));
+/// Steps (4) and (5), and what is late of step (1).
+pub(super) fn evaluate(
+    w: &mut Writer,
+    chart: &Chart,
+    state: &State,
+    groups: &Groups,
+    steps: &Flags,
+    late: &Late,
+    out: &mut Vec<Stmt>,
+) {
+    let mut refreshed: IndexVec<StepId, bool> = late.iter().map(|late| !late).collect();
+    let mut items: Vec<(Option<StepId>, Vec<Stmt>, Span)> = Vec::new();
+    for Set { transitions, shared } in order::sets(&w.c.cx.defs, chart) {
+        let Some(first) = transitions.first().map(|t| &chart.transitions[*t]) else { continue };
         let mut body = Vec::new();
-        for id in &set {
+        if let Some(step) = shared.filter(|s| !std::mem::replace(&mut refreshed[*s], true)) {
+            body = refresh(chart, state, step, groups);
+        }
+        for id in &transitions {
             condition(w, chart, state, *id, shared, &mut body);
         }
-        choose(w, chart, state, &set, &mut body);
-        match (shared, first) {
-            (Some(step), Some(first)) => {
-                grouped.push(groups.of(step), [when(active(chart, step), body, first.span)]);
-            }
-            _ => grouped.push(None, body),
+        choose(w, chart, state, &transitions, &mut body);
+        items.push((shared, body, first.span));
+    }
+    for (step, _) in refreshed.iter_enumerated().filter(|(_, done)| !**done) {
+        let at = items.iter().position(|item| item.0.is_some_and(|s| s > step)).unwrap_or(items.len());
+        items.insert(at, (Some(step), refresh(chart, state, step, groups), chart.steps[step].span));
+    }
+    let mut grouped = Grouped::default();
+    for (step, body, span) in items {
+        match step {
+            Some(step) => grouped.push_flagged(groups.of(step), step.index(), body, span),
+            None => grouped.push(None, body),
         }
     }
-    grouped.finish(groups, out);
+    grouped.finish(groups, steps, out);
 }
 
 /// (4) Evaluates a condition if all preceding steps are active: `chosen` then says whether it counts. The step `known` is
@@ -147,25 +166,25 @@ fn narrow(state: &State, id: TransitionId, also: Expr, span: Span, out: &mut Vec
 }
 
 /// (6) Clears all preceding steps of the chosen transitions, then sets all succeeding ones.
-pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<Stmt>) {
+pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, chosen: &Flags, wakes: &Wakes, out: &mut Vec<Stmt>) {
     let (mut clear, mut set) = (Grouped::default(), Grouped::default());
     for (id, transition) in chart.transitions.iter_enumerated() {
         let span = transition.span;
         // What is chosen, has active steps: the group of any of them is awake.
         let group = transition.from.first().and_then(|s| groups.of(*s));
-        let chosen = || read(state.chosen[id].clone());
         let off = transition.from.iter().map(|s| assign(of_step(chart, *s, field::X), constant(0, BOOL, span), span));
-        clear.push(group, [when(chosen(), off.collect(), span)]);
+        clear.push_flagged(group, id.index(), off.collect(), span);
         let mut on = vec![assign(state.chosen[id].clone(), constant(0, BOOL, span), span)];
         for step in &transition.to {
             activate(chart, state, *step, span, &mut on);
             groups.wake(groups.of(*step), span, &mut on);
+            on.extend(wakes[*step].iter().map(|awake| assign(awake.clone(), constant(1, BOOL, span), span)));
         }
-        set.push(group, [when(chosen(), on, span)]);
+        set.push_flagged(group, id.index(), on, span);
     }
     let mut body = Vec::new();
-    clear.finish(groups, &mut body);
-    set.finish(groups, &mut body);
+    clear.finish(groups, chosen, &mut body);
+    set.finish(groups, chosen, &mut body);
     let span = chart.span.before();
     out.push(when(read_temp(state.fires, BOOL, span), body, span));
 }
@@ -225,23 +244,31 @@ pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<
     }
 }
 
-/// (1) Refreshes the times of active steps.
-pub(super) fn times(chart: &Chart, state: &State, groups: &Groups, out: &mut Vec<Stmt>) {
+/// (1) Refreshes the times of active steps, but of those that are late.
+pub(super) fn times(chart: &Chart, state: &State, groups: &Groups, steps: &Flags, late: &Late, out: &mut Vec<Stmt>) {
     let mut grouped = Grouped::default();
     let mut last = None;
     for (id, step) in chart.steps.iter_enumerated() {
         let (span, group) = (step.span, groups.of(id));
-        let mut stmts = Vec::new();
         if last != group {
-            groups.tire(group, span, &mut stmts);
+            let mut tired = Vec::new();
+            groups.tire(group, span, &mut tired);
+            grouped.push(group, tired);
             last = group;
         }
-        let now = read_temp(state.now, Elem::Time, span);
-        let since = operation(Op::Sub, Elem::Time, vec![now, read(of_step(chart, id, field::START))], span);
-        let mut refresh = vec![assign(of_step(chart, id, field::T), since, span)];
-        groups.wake(group, span, &mut refresh);
-        stmts.push(when(active(chart, id), refresh, span));
-        grouped.push(group, stmts);
+        if !late[id] {
+            grouped.push_flagged(group, id.index(), refresh(chart, state, id, groups), span);
+        }
     }
-    grouped.finish(groups, out);
+    grouped.finish(groups, steps, out);
+}
+
+/// What step (1) does for an active step.
+fn refresh(chart: &Chart, state: &State, id: StepId, groups: &Groups) -> Vec<Stmt> {
+    let span = chart.steps[id].span;
+    let now = read_temp(state.now, Elem::Time, span);
+    let since = operation(Op::Sub, Elem::Time, vec![now, read(of_step(chart, id, field::START))], span);
+    let mut out = vec![assign(of_step(chart, id, field::T), since, span)];
+    groups.wake(groups.of(id), span, &mut out);
+    out
 }

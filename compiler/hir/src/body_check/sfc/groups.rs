@@ -6,6 +6,7 @@
 //! groups would cost more than they save, and there are none.
 
 use super::emit::*;
+use super::flags::{Flags, Item};
 use crate::body::{Expr, Place, Stmt};
 use crate::chart::{Chart, StepId};
 use crate::types::Types;
@@ -84,19 +85,31 @@ impl Groups {
 /// Statements that belong to groups, in order; neighbours of one group share its IF.
 #[derive(Default)]
 pub(super) struct Grouped {
-    runs: Vec<(Group, Vec<Stmt>)>,
+    runs: Vec<(Group, Vec<Item>)>,
 }
 
 impl Grouped {
     pub fn push(&mut self, group: Group, stmts: impl IntoIterator<Item = Stmt>) {
+        self.add(group, None, stmts);
+    }
+
+    /// Statements for the case that this flag of those given to `finish` is TRUE.
+    pub fn push_flagged(&mut self, group: Group, flag: usize, stmts: Vec<Stmt>, span: Span) {
+        self.add(group, Some((flag, span)), stmts);
+    }
+
+    fn add(&mut self, group: Group, flag: Option<(usize, Span)>, stmts: impl IntoIterator<Item = Stmt>) {
+        let item = Item { flag, stmts: stmts.into_iter().collect() };
         match self.runs.last_mut() {
-            Some((last, list)) if *last == group => list.extend(stmts),
-            _ => self.runs.push((group, stmts.into_iter().collect())),
+            Some((last, list)) if *last == group => list.push(item),
+            _ => self.runs.push((group, vec![item])),
         }
     }
 
-    pub fn finish(self, groups: &Groups, out: &mut Vec<Stmt>) {
-        for (group, mut stmts) in self.runs {
+    pub fn finish(self, groups: &Groups, flags: &Flags, out: &mut Vec<Stmt>) {
+        for (group, items) in self.runs {
+            let mut stmts = Vec::new();
+            flags.skip(items, &mut stmts);
             let Some(first) = stmts.first().map(|s| s.span) else { continue };
             match group {
                 Some(group) => out.push(when(groups.is_awake(group, first), stmts, first)),

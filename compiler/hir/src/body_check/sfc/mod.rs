@@ -18,9 +18,11 @@
 //! `stdlib/blocks/ACTION_CONTROL.st`. Nothing after this knows that there was a chart.
 //!
 //! # What it costs
-//! Per call one test of a flag for each step and for each set of rival transitions, one test for each action, and one store
-//! for each BOOL action; all else happens for active steps only. Setting and clearing is looked at only in calls in which
-//! something fires. In charts with many steps the tests are done for groups of steps first (`groups`).
+//! Per call one test for each action and one store for each BOOL action; one test for each eight steps, then for those four of
+//! them and then those one by one of which any is active (`flags`); all else happens for active steps only. If `.T` is read
+//! before the transitions are evaluated, steps are looked at twice, else their time is refreshed with their transitions
+//! (`late`). Setting and clearing is looked at only in calls in which something fires. In charts with many steps the tests are
+//! done for groups of steps first (`groups`).
 //!
 //! In: the tree of the chart. Out: a [`Body`], and the [`Chart`](crate::chart::Chart) in `Defs`. `build` and `actions` resolve
 //! and report; `control` and `evolve` write statements, from the pieces in `emit`.
@@ -30,18 +32,26 @@ mod build;
 mod control;
 mod emit;
 mod evolve;
+mod flags;
 mod groups;
+mod late;
+mod order;
 
 use crate::body::Body;
-use crate::chart::Condition;
+use crate::chart::{Chart, Condition};
+use crate::collect::charts::field;
 use crate::cx::Cx;
 use crate::defs::*;
 use crate::expr::Checker;
+use crate::shape::FLAGS_AT_ONCE;
 use emit::*;
+use flags::Flags;
+use late::Late;
 use plcc_diag::{Diagnostic, codes};
 use plcc_syntax::ast;
 
-/// Checks the chart that is the body of `pou` in the scope of its POU.
+/// Checks the chart that is the body of `pou` in the scope of its POU. Its statements are written when all bodies are checked
+/// ([`write_all`]).
 pub(crate) fn check<'a>(cx: &mut Cx<'a>, pou: PouId, scope: PouId, body: &'a ast::SfcBody) -> Body {
     if cx.defs.pous[scope].kind == PouKind::Function {
         cx.push(
@@ -53,22 +63,43 @@ pub(crate) fn check<'a>(cx: &mut Cx<'a>, pou: PouId, scope: PouId, body: &'a ast
     let mut labels = 0;
     let mut checker = Checker { cx, scope: Some(scope), temps: Default::default() };
     let Some(chart) = build::build(&mut checker, pou, body, &mut labels) else { return Body::default() };
-    let prefix = match pou == scope {
-        true => "$".to_string(),
-        false => format!("${}$", checker.cx.defs.pous[pou].name),
-    };
-    let mut w = Writer { c: &mut checker, owner: scope, prefix };
-    let mut stmts = Vec::new();
-    let state = evolve::state(&mut w, &chart);
-    evolve::begin(&mut w, &chart, &state, &mut stmts);
-    let groups = groups::Groups::new(&mut w, &chart);
-    evolve::times(&chart, &state, &groups, &mut stmts);
-    control::write(&mut w, &chart, &groups, &mut stmts);
-    evolve::evaluate(&mut w, &chart, &state, &groups, &mut stmts);
-    evolve::fire(&chart, &state, &groups, &mut stmts);
     let temps = checker.temps;
     cx.defs.charts.push(chart);
-    Body { stmts, temps, labels }
+    Body { stmts: Vec::new(), temps, labels }
+}
+
+/// Writes the statements of all charts.
+pub(crate) fn write_all(cx: &mut Cx) {
+    let charts = std::mem::take(&mut cx.defs.charts);
+    for (chart, late) in charts.iter().zip(late::late(&cx.defs, &charts)) {
+        write(cx, chart, &late);
+    }
+    cx.defs.charts = charts;
+}
+
+fn write(cx: &mut Cx, chart: &Chart, late: &Late) {
+    let temps = std::mem::take(&mut cx.defs.bodies[chart.pou].temps);
+    let prefix = match chart.pou == chart.owner {
+        true => "$".to_string(),
+        false => format!("${}$", cx.defs.pous[chart.pou].name),
+    };
+    let mut checker = Checker { cx, scope: Some(chart.owner), temps };
+    let mut w = Writer { c: &mut checker, owner: chart.owner, prefix };
+    let mut stmts = Vec::new();
+    let state = evolve::state(&mut w, chart);
+    evolve::begin(&mut w, chart, &state, &mut stmts);
+    let groups = groups::Groups::new(&mut w, chart);
+    let steps = chart.steps.indices().map(|s| of_step(chart, s, field::X));
+    let steps = Flags::new(steps.collect(), chart.steps.len().next_multiple_of(FLAGS_AT_ONCE as usize));
+    let chosen = Flags::new(state.chosen.iter().cloned().collect(), chart.transitions.len());
+    evolve::times(chart, &state, &groups, &steps, late, &mut stmts);
+    let wakes = control::write(&mut w, chart, &groups, &steps, &mut stmts);
+    evolve::evaluate(&mut w, chart, &state, &groups, &steps, late, &mut stmts);
+    evolve::fire(chart, &state, &groups, &chosen, &wakes, &mut stmts);
+    let temps = checker.temps;
+    let body = &mut cx.defs.bodies[chart.pou];
+    body.temps = temps;
+    body.stmts.append(&mut stmts);
 }
 
 /// The condition of a transition in Instruction List: the statements that compute the current result, and the BOOL that it is
