@@ -156,10 +156,22 @@ trait Unit {
     /// Moves the characters that start at a byte, at most `limit`, to a byte in front of them or apart from them, and puts a 0
     /// behind them; how many these were. There must be room for them.
     fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize;
+    /// What [`Unit::advance`] does, for what is short; the two may overlap. `None` if it is not, then nothing was written.
+    fn copy_short(_mem: &mut [u8], _from: usize, _limit: usize, _to: usize) -> Option<usize> {
+        None
+    }
+    /// The position, from 1, of a unit that is not 0 among the first `limit` and before the first 0; 0 if it is not there.
+    /// `None` if one would have to look far.
+    fn find_near(_mem: &[u8], _at: usize, _limit: usize, _unit: u16) -> Option<usize> {
+        None
+    }
     /// Copies characters from a byte to a byte; the two may overlap.
     fn copy(mem: &mut [u8], from: usize, count: usize, to: usize);
     /// Writes the text of an integer below 10^8 at a byte, where there is room for it, and puts a 0 behind it; its length.
-    fn short_number(mem: &mut [u8], to: usize, negative: bool, number: u32) -> usize;
+    /// `None` near the end of the memory, then nothing was written.
+    fn short_number(_mem: &mut [u8], _to: usize, _negative: bool, _number: u32) -> Option<usize> {
+        None
+    }
 }
 
 struct Narrow;
@@ -167,39 +179,50 @@ struct Wide;
 
 impl Unit for Narrow {
     const BYTES: usize = 1;
+    #[inline(always)]
     fn get(bytes: &[u8], n: usize) -> u16 {
         u16::from(bytes[n])
     }
+    #[inline(always)]
     fn set(bytes: &mut [u8], n: usize, unit: u16) {
         bytes[n] = unit as u8;
     }
+    #[inline(always)]
     fn before_zero(mem: &[u8], range: Range<usize>) -> usize {
         narrow::before_zero(mem, range)
     }
+    #[inline(always)]
     fn compare(mem: &[u8], a: Range<usize>, b: Range<usize>) -> Ordering {
         narrow::compare(mem, a, b)
     }
+    #[inline(always)]
     fn find(mem: &[u8], text: Range<usize>, wanted: Range<usize>) -> Option<usize> {
         narrow::find(mem, text, wanted)
     }
+    #[inline(always)]
     fn find_unit(mem: &[u8], text: Range<usize>, unit: u16) -> Option<usize> {
         narrow::find_unit(mem, text, u8::try_from(unit).ok()?)
     }
+    #[inline(always)]
     fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
         narrow::advance(mem, from, limit, to)
     }
+    #[inline(always)]
+    fn copy_short(mem: &mut [u8], from: usize, limit: usize, to: usize) -> Option<usize> {
+        narrow::copy_short(mem, from, limit, to)
+    }
+    #[inline(always)]
+    fn find_near(mem: &[u8], at: usize, limit: usize, unit: u16) -> Option<usize> {
+        narrow::find_near(mem, at, limit, u8::try_from(unit).ok()?)
+    }
+    #[inline(always)]
     fn copy(mem: &mut [u8], from: usize, count: usize, to: usize) {
         narrow::copy(mem, from, count, to);
     }
-    fn short_number(mem: &mut [u8], to: usize, negative: bool, number: u32) -> usize {
-        let (digits, count) = narrow::digits(number);
-        if negative {
-            mem[to] = b'-';
-        }
-        let to = to + usize::from(negative);
-        narrow::store(mem, to, digits, count);
-        mem[to + count] = 0;
-        usize::from(negative) + count
+    #[inline(always)]
+    fn short_number(mem: &mut [u8], to: usize, negative: bool, number: u32) -> Option<usize> {
+        let room = mem.get_mut(to..to.checked_add(narrow::SHORT_NUMBER)?)?.first_chunk_mut()?;
+        Some(narrow::short_number(room, negative, number))
     }
 }
 
@@ -238,52 +261,53 @@ impl Unit for Wide {
     fn copy(mem: &mut [u8], from: usize, count: usize, to: usize) {
         mem.copy_within(from..from + 2 * count, to);
     }
-    fn short_number(mem: &mut [u8], to: usize, negative: bool, number: u32) -> usize {
-        let (digits, count) = narrow::digits(number);
-        let minus = [b'-'].into_iter().take(usize::from(negative));
-        let text = minus.chain(digits.to_le_bytes().into_iter().take(count));
-        text.chain([0]).enumerate().for_each(|(n, unit)| Self::set(&mut mem[to..], n, u16::from(unit)));
-        usize::from(negative) + count
-    }
 }
 
-/// The bytes that a string has for characters. One outside the region (no caller has such) counts as cut or empty.
+/// The bytes that a string has for characters. One outside the region (no caller has such) counts as empty.
+#[inline(always)]
 fn extent<U: Unit>(mem: &[u8], text: Text) -> Range<usize> {
-    let start = (text.at as usize).min(mem.len());
-    let room = (mem.len() - start) / U::BYTES;
-    start..start + room.min(text.capacity as usize) * U::BYTES
+    let (start, bytes) = (text.at as usize, text.capacity as usize * U::BYTES);
+    if start + bytes <= mem.len() { start..start + bytes } else { 0..0 }
 }
 
 /// The bytes of the characters of a string.
+#[inline(always)]
 fn characters<U: Unit>(mem: &[u8], text: Text) -> Range<usize> {
     let all = extent::<U>(mem, text);
     all.start..all.start + U::before_zero(mem, all.clone()) * U::BYTES
 }
 
 /// Units in a range of bytes.
+#[inline(always)]
 fn count<U: Unit>(range: &Range<usize>) -> usize {
     range.len() / U::BYTES
 }
 
 /// A range without its first `n` units, all of which it has.
+#[inline(always)]
 fn from<U: Unit>(range: &Range<usize>, n: usize) -> Range<usize> {
     range.start + n * U::BYTES..range.end
 }
 
 /// The first `n` units of a range that has so many.
+#[inline(always)]
 fn first<U: Unit>(range: &Range<usize>, n: usize) -> Range<usize> {
     range.start..range.start + n * U::BYTES
 }
 
 /// The byte behind the first `n` characters of `dst`, their number, and how many more it can take; `None` if it lies outside.
+#[inline(always)]
 fn behind<U: Unit>(mem: &[u8], dst: Text, n: usize) -> Option<(usize, usize, usize)> {
-    let units = mem.len().saturating_sub(dst.at as usize) / U::BYTES;
-    let capacity = (dst.capacity as usize).min(units.checked_sub(1)?);
+    let capacity = dst.capacity as usize;
+    if dst.at as usize + (capacity + 1) * U::BYTES > mem.len() {
+        return None;
+    }
     let n = n.min(capacity);
     Some((dst.at as usize + n * U::BYTES, n, capacity - n))
 }
 
 /// Copies characters behind the first `n` of `dst` and closes the string; the new length.
+#[inline(always)]
 fn put<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Range<usize>) -> usize {
     let Some((to, n, room)) = behind::<U>(mem, dst, n) else { return 0 };
     let more = count::<U>(&src).min(room);
@@ -310,25 +334,44 @@ fn put_first<U: Unit>(mem: &mut [u8], dst: Text, n: usize, src: Text, most: usiz
     n + U::advance(mem, all.start, count::<U>(&all).min(room).min(most), to)
 }
 
+/// Copies what is short behind the first `n` of `dst`: at most `most` of the characters behind the first `skip` of `src`. The
+/// new length; `None` if it is not short or a number is none, then nothing was written.
+#[inline(always)]
+fn at_once<U: Unit>(mem: &mut [u8], dst: Text, n: u64, src: Text, skip: u64, most: usize) -> Option<u64> {
+    let room = u64::from(dst.capacity).checked_sub(n)?.min(u64::from(src.capacity).checked_sub(skip)?) as usize;
+    let (from, to) = (src.at as usize + skip as usize * U::BYTES, dst.at as usize + n as usize * U::BYTES);
+    Some(n + U::copy_short(mem, from, most.min(room), to)? as u64)
+}
+
 /// A length or position as the language counts: a negative one is 0, one beyond any string is as good as its end.
+#[inline(always)]
 fn number(raw: u64) -> usize {
     usize::try_from((raw as i64).max(0)).unwrap_or(usize::MAX)
 }
 
+#[inline(always)]
 fn len<U: Unit>(mem: &mut [u8], [a]: [Text; 1], _: [u64; 0]) -> u64 {
     count::<U>(&characters::<U>(mem, a)).min(INT_MAX) as u64
 }
 
+#[inline(always)]
 fn compare<U: Unit>(mem: &mut [u8], [a, b]: [Text; 2], _: [u64; 0]) -> u64 {
     U::compare(mem, extent::<U>(mem, a), extent::<U>(mem, b)) as i64 as u64
 }
 
+#[inline(always)]
 fn append<U: Unit>(mem: &mut [u8], [dst, src]: [Text; 2], [n]: [u64; 1]) -> u64 {
+    at_once::<U>(mem, dst, n, src, 0, usize::MAX).unwrap_or_else(|| append_any::<U>(mem, dst, src, n))
+}
+
+#[inline(never)]
+fn append_any<U: Unit>(mem: &mut [u8], dst: Text, src: Text, n: u64) -> u64 {
     put_first::<U>(mem, dst, number(n), src, usize::MAX) as u64
 }
 
+#[inline(always)]
 fn left<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
-    put_first::<U>(mem, dst, 0, a, number(l)) as u64
+    tail::<U>(mem, [dst, a], [0, l])
 }
 
 fn right<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
@@ -338,6 +381,7 @@ fn right<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [l]: [u64; 1]) -> u64 {
 }
 
 /// A string without its first `n` characters, which it has.
+#[inline(always)]
 fn behind_first<U: Unit>(text: Text, n: usize) -> Text {
     Text { at: text.at + (n * U::BYTES) as u32, capacity: text.capacity - n as u32 }
 }
@@ -434,7 +478,17 @@ fn find<U: Unit>(mem: &mut [u8], [a, b]: [Text; 2], _: [u64; 0]) -> u64 {
 }
 
 /// The same for one character, looked for behind the first `n` characters; the position counts from there.
+#[inline(always)]
 fn find_unit<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [unit, n]: [u64; 2]) -> u64 {
+    let near = u64::from(a.capacity)
+        .checked_sub(n)
+        .filter(|_| unit != 0)
+        .and_then(|limit| U::find_near(mem, a.at as usize + n as usize * U::BYTES, limit as usize, unit as u16));
+    near.map_or_else(|| find_unit_any::<U>(mem, a, unit, n), |position| position as u64)
+}
+
+#[inline(never)]
+fn find_unit_any<U: Unit>(mem: &[u8], a: Text, unit: u64, n: u64) -> u64 {
     let all = extent::<U>(mem, a);
     let n = number(n).min(count::<U>(&all));
     let at = if unit == 0 { None } else { U::find_unit(mem, from::<U>(&all, n), unit as u16) };
@@ -442,6 +496,7 @@ fn find_unit<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [unit, n]: [u64; 2]) -> u6
 }
 
 /// How many characters lie in front of what is left of a string when `l` more are taken away behind the first `n`.
+#[inline(always)]
 fn skip<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [n, l]: [u64; 2]) -> u64 {
     let all = extent::<U>(mem, a);
     let n = number(n).min(count::<U>(&all));
@@ -451,7 +506,13 @@ fn skip<U: Unit>(mem: &mut [u8], [a]: [Text; 1], [n, l]: [u64; 2]) -> u64 {
 }
 
 /// At most `l` of the characters behind the first `n`.
+#[inline(always)]
 fn tail<U: Unit>(mem: &mut [u8], [dst, a]: [Text; 2], [n, l]: [u64; 2]) -> u64 {
+    at_once::<U>(mem, dst, 0, a, n, number(l)).unwrap_or_else(|| tail_any::<U>(mem, dst, a, n, l))
+}
+
+#[inline(never)]
+fn tail_any<U: Unit>(mem: &mut [u8], dst: Text, a: Text, n: u64, l: u64) -> u64 {
     let n = number(n).min(a.capacity as usize);
     put_first::<U>(mem, dst, 0, behind_first::<U>(a, n), number(l)) as u64
 }
@@ -517,16 +578,22 @@ fn write<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [n, raw, elem]: [u64; 3]) ->
 const SHORT: u64 = 100_000_000;
 
 /// A signed integer as [`value::write_text`] writes it.
+#[inline(always)]
 fn whole<U: Unit>(mem: &mut [u8], [dst]: [Text; 1], [n, value]: [u64; 2]) -> u64 {
-    let value = value as i64;
-    let Some((to, start, room)) = behind::<U>(mem, dst, number(n)) else { return 0 };
-    // A minus and eight digits.
-    if value.unsigned_abs() < SHORT && room >= 9 {
-        return (start + U::short_number(mem, to, value < 0, value.unsigned_abs() as u32)) as u64;
+    let magnitude = (value as i64).unsigned_abs();
+    let room = u64::from(dst.capacity).checked_sub(n).filter(|room| *room >= narrow::SHORT_NUMBER as u64);
+    if room.is_some() && magnitude < SHORT {
+        let to = dst.at as usize + n as usize * U::BYTES;
+        if let Some(length) = U::short_number(mem, to, (value as i64) < 0, magnitude as u32) {
+            return n + length as u64;
+        }
     }
-    let mut out = Writer::<U>::new(mem, dst, start);
-    let _ = value::write_text(&mut out, Elem::Lint, value as u64);
-    out.length as u64
+    whole_any::<U>(mem, dst, n, value)
+}
+
+#[inline(never)]
+fn whole_any<U: Unit>(mem: &mut [u8], dst: Text, n: u64, value: u64) -> u64 {
+    write::<U>(mem, [dst], [n, value, u64::from(Elem::Lint.code())])
 }
 
 /// A unit that a STRING cannot hold becomes a question mark.

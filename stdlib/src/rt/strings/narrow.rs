@@ -10,7 +10,7 @@ const STEP: usize = 32;
 /// The bytes from there on; `None` near the end of the memory.
 #[inline(always)]
 fn window(mem: &[u8], at: usize) -> Option<&[u8; STEP]> {
-    mem.get(at..)?.first_chunk()
+    mem.get(at..at.checked_add(STEP)?)?.first_chunk()
 }
 
 /// Marks, bit by bit, of which the lowest one is right; what is above it may be not.
@@ -78,6 +78,17 @@ mod marks {
 /// How many bytes there are before the first 0, or all.
 #[inline(always)]
 pub fn before_zero(mem: &[u8], range: Range<usize>) -> usize {
+    if let Some(bytes) = window(mem, range.start) {
+        let ends = marks::of(bytes, 0);
+        if ends != 0 {
+            return (ends.trailing_zeros() as usize).min(range.len());
+        }
+    }
+    before_far_zero(mem, range)
+}
+
+#[inline(never)]
+fn before_far_zero(mem: &[u8], range: Range<usize>) -> usize {
     let mut at = range.start;
     while at < range.end {
         let Some(bytes) = window(mem, at) else { return at - range.start + slow(&mem[at..range.end], 0) };
@@ -104,7 +115,7 @@ pub fn compare(mem: &[u8], a: Range<usize>, b: Range<usize>) -> Ordering {
     let mut at = 0;
     while at < both {
         let (Some(x), Some(y)) = (window(mem, a.start + at), window(mem, b.start + at)) else {
-            return slow_compare(&mem[a.start + at..a.end], &mem[b.start + at..b.end]);
+            return slow_compare(mem, a.start + at..a.end, b.start + at..b.end);
         };
         let stop = marks::differing(x, y) | marks::of(x, 0);
         if stop != 0 {
@@ -121,8 +132,23 @@ pub fn compare(mem: &[u8], a: Range<usize>, b: Range<usize>) -> Ordering {
 
 #[cold]
 #[inline(never)]
-fn slow_compare(a: &[u8], b: &[u8]) -> Ordering {
+fn slow_compare(mem: &[u8], a: Range<usize>, b: Range<usize>) -> Ordering {
+    let (a, b) = (&mem[a], &mem[b]);
     a[..slow(a, 0)].cmp(&b[..slow(b, 0)])
+}
+
+/// The position, from 1, of a byte that is not 0 within `limit` bytes and before the first 0; 0 if it is not there. `None` if
+/// one would have to look further.
+#[inline(always)]
+pub fn find_near(mem: &[u8], at: usize, limit: usize, unit: u8) -> Option<usize> {
+    let bytes = window(mem, at)?;
+    let units = marks::of(bytes, unit);
+    let stop = units | marks::of(bytes, 0);
+    if stop == 0 {
+        return None;
+    }
+    let found = stop.trailing_zeros();
+    Some(if (found as usize) < limit && units >> found & 1 != 0 { found as usize + 1 } else { 0 })
 }
 
 /// Where a byte that is not 0 is found before the text ends, at its first 0 or with its range; from its start.
@@ -131,25 +157,18 @@ pub fn find_unit(mem: &[u8], range: Range<usize>, unit: u8) -> Option<usize> {
     let mut at = range.start;
     while at < range.end {
         let Some(bytes) = window(mem, at) else {
-            return slow_find_unit(&mem[at..range.end], unit).map(|found| at - range.start + found);
+            let rest = &mem[at..range.end];
+            let found = slow(rest, unit);
+            return (found < rest.len() && rest[found] != 0).then_some(at - range.start + found);
         };
-        let units = marks::of(bytes, unit);
-        let stop = units | marks::of(bytes, 0);
+        let stop = marks::of(bytes, unit) | marks::of(bytes, 0);
         if stop != 0 {
             let found = at + stop.trailing_zeros() as usize;
-            let is_unit = units & stop & stop.wrapping_neg() != 0;
-            return (found < range.end && is_unit).then_some(found - range.start);
+            return (found < range.end && mem[found] == unit).then_some(found - range.start);
         }
         at += STEP;
     }
     None
-}
-
-#[cold]
-#[inline(never)]
-fn slow_find_unit(text: &[u8], unit: u8) -> Option<usize> {
-    let found = slow(text, unit);
-    (found < text.len() && text[found] != 0).then_some(found)
 }
 
 /// Where a text that is not empty begins in another; both end at their first 0 or with their range.
@@ -169,23 +188,66 @@ pub fn find(mem: &[u8], text: Range<usize>, wanted: Range<usize>) -> Option<usiz
     }
 }
 
+/// Copies what is short, bytes up to the first 0, at most `limit`, and puts a 0 behind them; how many these were. All is read
+/// before anything is written: as two parts that overlap, the last one first, so that who then reads from the start finds
+/// what one store wrote. `None` if it is longer, or near the end of the memory: then nothing was written.
+#[inline(always)]
+pub fn copy_short(mem: &mut [u8], from: usize, limit: usize, to: usize) -> Option<usize> {
+    #[inline(always)]
+    fn store<const N: usize>(mem: &mut [u8], to: usize, end: usize, first: [u8; N], last: [u8; N]) -> Option<()> {
+        let target = mem.get_mut(to..)?.get_mut(..end)?;
+        *target.last_chunk_mut()? = last;
+        *target.first_chunk_mut()? = first;
+        Some(())
+    }
+    let bytes = window(mem, from)?;
+    let count = (marks::of(bytes, 0).trailing_zeros() as usize).min(limit);
+    // With the 0, which takes the place of the last byte of the last part.
+    let end = count + 1;
+    let text = bytes.get(..end)?;
+    match end {
+        17.. => {
+            let (first, last) = (*text.first_chunk()?, u128::from_le_bytes(*text.last_chunk()?));
+            store(mem, to, end, first, (last & (u128::MAX >> 8)).to_le_bytes())?;
+        }
+        9.. => {
+            let (first, last) = (*text.first_chunk()?, u64::from_le_bytes(*text.last_chunk()?));
+            store(mem, to, end, first, (last & (u64::MAX >> 8)).to_le_bytes())?;
+        }
+        5.. => {
+            let (first, last) = (*text.first_chunk()?, u32::from_le_bytes(*text.last_chunk()?));
+            store(mem, to, end, first, (last & (u32::MAX >> 8)).to_le_bytes())?;
+        }
+        3.. => {
+            let (first, last) = (*text.first_chunk()?, u16::from_le_bytes(*text.last_chunk()?));
+            store(mem, to, end, first, (last & (u16::MAX >> 8)).to_le_bytes())?;
+        }
+        _ => {
+            let first = bytes[0];
+            let target = mem.get_mut(to..)?.get_mut(..end)?;
+            target[count] = 0;
+            if count > 0 {
+                target[0] = first;
+            }
+        }
+    }
+    Some(count)
+}
+
 /// Moves bytes up to the first 0, at most `limit`, to a place in front of them or apart from them, and puts a 0 behind them;
 /// how many these were. There must be room for `limit` bytes and the 0.
-#[inline(always)]
 pub fn advance(mem: &mut [u8], from: usize, limit: usize, to: usize) -> usize {
     let mut done = 0;
     loop {
         let (at, target, left) = (from + done, to + done, limit - done);
         let Some(bytes) = window(mem, at) else { return done + slow_advance(mem, at, left, target) };
-        let ends = marks::of(bytes, 0);
-        let found = if ends == 0 { STEP } else { ends.trailing_zeros() as usize };
+        let found = marks::of(bytes, 0).trailing_zeros() as usize;
         if left <= found {
             piece(mem, at, left, target);
             mem[target + left] = 0;
             return done + left;
         }
         if found < STEP {
-            // The 0 comes along.
             piece(mem, at, found + 1, target);
             return done + found;
         }
@@ -256,30 +318,35 @@ pub fn digits(number: u32) -> (u64, usize) {
     ((ones | 0x3030_3030_3030_3030) >> (8 * leading), 8 - leading)
 }
 
-/// Writes the first `count` bytes of a word, at most 8.
+/// Room for a minus, eight digits and a 0.
+pub const SHORT_NUMBER: usize = 10;
+
+/// Writes the text of an integer below 10^8 and a 0 behind it; how many characters these are. No other byte is touched.
 #[inline(always)]
-pub fn store(mem: &mut [u8], to: usize, word: u64, count: usize) {
-    #[inline(always)]
-    fn twice<const N: usize>(target: &mut [u8], first: [u8; N], last: [u8; N]) {
-        if let Some(end) = target.last_chunk_mut() {
-            *end = last;
-        }
-        if let Some(start) = target.first_chunk_mut() {
-            *start = first;
-        }
+pub fn short_number(room: &mut [u8; SHORT_NUMBER], negative: bool, number: u32) -> usize {
+    let (digits, count) = digits(number);
+    let sign = usize::from(negative);
+    if negative {
+        room[0] = b'-';
     }
-    let target = &mut mem[to..to + count];
+    let target = &mut room[sign..];
+    // Two parts that overlap, and the 0 with the last one.
     match count {
-        8.. => twice(target, word.to_le_bytes(), word.to_le_bytes()),
+        8.. => target[..8].copy_from_slice(&digits.to_le_bytes()),
         4.. => {
-            let last = word >> (8 * (count - 4));
-            twice(target, (word as u32).to_le_bytes(), (last as u32).to_le_bytes());
+            let last = (digits >> (8 * (count - 3))) as u32;
+            target[count - 3..count + 1].copy_from_slice(&last.to_le_bytes());
+            target[..4].copy_from_slice(&(digits as u32).to_le_bytes());
+            return sign + count;
         }
         2.. => {
-            let last = word >> (8 * (count - 2));
-            twice(target, (word as u16).to_le_bytes(), (last as u16).to_le_bytes());
+            let last = (digits >> (8 * (count - 1))) as u16;
+            target[count - 1..count + 1].copy_from_slice(&last.to_le_bytes());
+            target[..2].copy_from_slice(&(digits as u16).to_le_bytes());
+            return sign + count;
         }
-        1 => target[0] = word as u8,
-        0 => {}
+        _ => target[0] = digits as u8,
     }
+    target[count] = 0;
+    sign + count
 }

@@ -244,7 +244,7 @@ fn nothing_leaves_the_region() {
     };
     for _ in 0..40_000 {
         let set = TextFns::of(random(2) == 1);
-        let f = set.all()[random(13) as usize];
+        let f = set.all()[random(set.all().len() as u64) as usize];
         let mut mem: Vec<u8> = (0..random(64)).map(|_| b"\0\0ab1.-"[random(7) as usize]).collect();
         let before = mem.clone();
         let texts: Vec<Text> =
