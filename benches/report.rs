@@ -1,7 +1,7 @@
 //! All programs in all lanes, in one run, to a report below `target/bench-report` (Markdown, JSON, SVG).
 //!
 //! `cargo bench` measures everything; `cargo bench -p plcc-benches -- pid fir` those programs, `--quick` in a third of the
-//! time, `--brief` prints medians of a few lanes at once and writes no report. `cargo test` runs all programs for some cycles:
+//! time, `--brief` prints medians of a few lanes at once and writes no report, `--compile` how long compiling takes. `cargo test` runs all programs for some cycles:
 //! every lane must give the same outputs after each cycle.
 
 use plcc::bench::measure::{Plan, measure};
@@ -29,6 +29,9 @@ fn main() -> ExitCode {
     } else if has("--brief") {
         println!("median cycle, ns: program, then each lane and its ratio to C -O2");
         chosen.iter().try_for_each(|program| brief(program, folder.path()))
+    } else if has("--compile") {
+        println!("ms of CPU from sources to machine code, by stages");
+        chosen.iter().try_for_each(|program| stages(program))
     } else if has("--bench") {
         let plan = if has("--quick") { Plan::QUICK } else { Plan::FULL };
         write_report(&chosen, &charts(&names), &plan, folder.path())
@@ -84,6 +87,15 @@ fn brief(program: &Program, folder: &Path) -> Result<(), String> {
     let base = medians.iter().find(|(name, _)| *name == reference::O2.lane).map_or(f64::NAN, |(_, ns)| *ns);
     let cells = medians.iter().map(|(name, ns)| format!("{name} {ns:.1} ({:.2})", ns / base));
     println!("{:10} {}", program.name, cells.collect::<Vec<_>>().join(", "));
+    Ok(())
+}
+
+/// How long compiling takes, a line a program.
+fn stages(program: &Program) -> Result<(), String> {
+    let stages = compile_time::to_jit(program.sources, 9)?;
+    let sum: f64 = stages.iter().map(|(_, ms)| ms).sum();
+    let cells: Vec<String> = stages.iter().map(|(stage, ms)| format!("{stage} {ms:.2}")).collect();
+    println!("{:10} {sum:.2}: {}", program.name, cells.join(", "));
     Ok(())
 }
 

@@ -241,6 +241,8 @@ impl<'a, 'f> Translator<'a, 'f> {
         let value = self.defined(id);
         match (self.func.values[id], self.constants[id]) {
             (Repr::I16, Some(raw)) => self.b.ins().iconst(types::I32, i64::from(raw as u16 as i16 as i32 as u32)),
+            // Made where it is needed: one for the whole function would lie in memory, for want of registers.
+            (repr @ (Repr::I8 | Repr::I32 | Repr::I64), Some(raw)) => prim::constant(&mut self.b, repr, raw),
             (Repr::I16, None) if self.b.func.dfg.value_type(value) == types::I16 => {
                 self.b.ins().uextend(types::I32, value)
             }
@@ -365,9 +367,9 @@ impl<'a, 'f> Translator<'a, 'f> {
                 let (value, count) = (self.carried(args[0]), self.value(args[1]));
                 prim::emit(&mut self.b, op, Repr::I32, &[value, count])
             }
-            (PrimOp::Select, Repr::I16) => {
+            (PrimOp::Select, Repr::I8 | Repr::I16 | Repr::I32 | Repr::I64) => {
                 let args = [self.value(args[0]), self.carried(args[1]), self.carried(args[2])];
-                prim::emit(&mut self.b, op, Repr::I32, &args)
+                prim::emit(&mut self.b, op, repr, &args)
             }
             (PrimOp::Sext(to) | PrimOp::Zext(to), Repr::I16) if self.extended(args[0], op).is_some() => {
                 let Some(wide) = self.extended(args[0], op) else { plcc_diag::bug!("no extended value") };
