@@ -128,6 +128,22 @@ fn many_small_units() {
     assert_eq!(check("FUNCTION F(\n".repeat(60_000).as_bytes()).code, 1);
 }
 
+/// Components, values and labels are not looked for one by one.
+#[test]
+fn many_components_and_labels() {
+    let list = |f: &dyn Fn(usize) -> String| (0..20_000).map(f).collect::<String>();
+    let fields = list(&|n| format!("f{n} : INT;\n"));
+    let uses = list(&|n| format!("s.f{n} := {};\n", n % 100));
+    let values = list(&|n| format!(", f{n} := 1"));
+    let labels = list(&|n| format!("{n}: x := 1;\n"));
+    let text = format!(
+        "TYPE S : STRUCT g : INT;\n{fields}END_STRUCT; END_TYPE\nPROGRAM Main\nVAR s : S := (g := 1{values}); x : DINT; END_VAR\n\
+         {uses}CASE x OF\n{labels}END_CASE;\nEND_PROGRAM\n"
+    );
+    let done = check(text.as_bytes());
+    assert_eq!(done.code, 0, "{}", &done.stderr[..done.stderr.len().min(400)]);
+}
+
 /// 8 MB here, to be quick without optimisation; the time grows with the size and nothing else.
 #[test]
 fn a_large_file() {

@@ -17,7 +17,7 @@
 //! line `> name` is input; TRUE and FALSE are `#` and `_`, a duration is its number of milliseconds.
 
 use plcc_diag::{Severity, codes};
-use plcc_hir::Profile;
+use plcc_hir::{Profile, specials};
 use plcc_stdlib::funcs::{self, StdFn};
 use plcc_stdlib::{blocks, elem};
 use plcc_tests::compile::diagnose;
@@ -344,6 +344,8 @@ fn the_list_of_functions_is_that_of_the_compiler() {
         page.push_str(&format!("\n## {clause}\n\n| function | gives |\n|---|---|\n"));
         rows.iter().for_each(|f| page.push_str(&format!("| `{}` | {} |\n", f.signature(), f.doc)));
     }
+    page.push_str("\n## Functions of variables and types\n\n| function | gives |\n|---|---|\n");
+    specials::SPECIALS.iter().for_each(|row| page.push_str(&format!("| `{}` | {} |\n", row.signature, row.doc)));
     page.push_str(&conversions());
     judge_generated("functions_list.md", &page);
 }

@@ -1,6 +1,7 @@
 //! `plcc explain`: a diagnostic code, a standard function, a standard function block, an operator of Instruction List.
 
 use crate::failure::Failure;
+use plcc_hir::specials;
 use plcc_stdlib::{blocks, funcs};
 use plcc_syntax::il_operators;
 
@@ -11,13 +12,15 @@ pub fn page(name: &str) -> Result<String, Failure> {
         return Ok(format!("{}: {}\n\n{}", info.code, info.title, info.page));
     }
     // `ADD` is a function and an operator of IL.
-    let pages: Vec<String> = [function(&upper), block(&upper), operator(&upper)].into_iter().flatten().collect();
+    let pages: Vec<String> =
+        [function(&upper), special(&upper), block(&upper), operator(&upper)].into_iter().flatten().collect();
     if !pages.is_empty() {
         return Ok(pages.join("\n"));
     }
     let block_names = blocks::blocks().iter().map(|(n, _)| *n);
     let operators = il_operators::OPERATORS.iter().map(|o| o.name);
     let names = plcc_diag::codes::all().map(|c| c.info().code).chain(funcs::names()).chain(block_names);
+    let names = names.chain(specials::SPECIALS.iter().map(|row| row.name));
     let names = names.chain(operators).chain(il_operators::INPUT_OPERATORS.iter().map(|o| o.name));
     let hint = plcc_hir::similar(&upper, names).map(|n| format!("; did you mean `{n}`?")).unwrap_or_default();
     Err(Failure::usage(format!("nothing is known about `{name}`{hint}")))
@@ -28,6 +31,12 @@ fn function(name: &str) -> Option<String> {
     let clause =
         if func.clause.is_empty() { String::new() } else { format!("\nStandard: IEC 61131-3 {}.\n", func.clause) };
     Some(format!("{}\n\n{}\n{clause}", func.signature(), func.doc))
+}
+
+fn special(name: &str) -> Option<String> {
+    let row = specials::find(name)?;
+    let standard = if row.clause.starts_with("Ed.") { "IEC 61131-3 " } else { "no, a form of " };
+    Some(format!("{}\n\n{}\n\nStandard: {standard}{}.\n", row.signature, row.doc, row.clause))
 }
 
 fn block(name: &str) -> Option<String> {

@@ -42,7 +42,7 @@ impl<'a> Checker<'_, 'a> {
     pub fn user_call(&mut self, callee: Callee, pou: PouId, call: Arguments<'a>, span: Span) -> Option<Call> {
         let mut out =
             Call { callee, inputs: Vec::new(), in_outs: Vec::new(), outputs: Vec::new(), en: None, eno: None, span };
-        let mut fine = true;
+        let (mut fine, mut unknown) = (true, false);
         if self.cx.defs.pous[pou].kind == PouKind::Action {
             if let Some(arg) = call.args.first() {
                 self.report(
@@ -125,7 +125,7 @@ impl<'a> Checker<'_, 'a> {
                         if let Some(e) = value {
                             self.operand(e, None);
                         }
-                        fine = false;
+                        unknown = true;
                         continue;
                     };
                     let section = self.cx.defs.vars[param].section;
@@ -143,7 +143,7 @@ impl<'a> Checker<'_, 'a> {
                 }
                 ast::ArgKind::Output { negated, name, target } => {
                     if self.en_eno(pou, name) == Some(false) {
-                        match self.eno_target(*negated, name, target.as_ref()) {
+                        match self.eno_target(*negated, target.as_ref()) {
                             Some(target) => out.eno = target,
                             None => fine = false,
                         }
@@ -153,7 +153,7 @@ impl<'a> Checker<'_, 'a> {
                         if let Some(e) = target {
                             self.operand(e, None);
                         }
-                        fine = false;
+                        unknown = true;
                         continue;
                     };
                     match self.cx.defs.vars[param].section {
@@ -173,8 +173,9 @@ impl<'a> Checker<'_, 'a> {
                 }
             }
         }
-        fine &= self.all_in_outs_given(pou, &given, call.at);
-        fine.then_some(out)
+        // A name that is no parameter's may have been meant for what is missing.
+        fine &= unknown || self.all_in_outs_given(pou, &given, call.at);
+        (fine && !unknown).then_some(out)
     }
 
     /// The parameter in `parameter = value`, where that compares nothing, and the place of the `=`.
@@ -212,18 +213,9 @@ impl<'a> Checker<'_, 'a> {
     }
 
     /// The variable behind `ENO =>`, if one is written; `None` after a mistake.
-    pub fn eno_target(
-        &mut self,
-        negated: bool,
-        name: &ast::Name,
-        target: Option<&'a ast::Expr>,
-    ) -> Option<Option<Place>> {
+    pub fn eno_target(&mut self, negated: bool, target: Option<&'a ast::Expr>) -> Option<Option<Eno>> {
         let Some(target) = target else { return Some(None) };
         let place = self.place(target)?;
-        if negated {
-            self.not_yet(name.span, "NOT before ENO");
-            return None;
-        }
         if self.elem_of(place.ty) != Some(Elem::Bool) {
             let message = format!("ENO is BOOL, this variable is {}", self.cx.type_name(place.ty));
             self.report(
@@ -231,7 +223,7 @@ impl<'a> Checker<'_, 'a> {
             );
             return None;
         }
-        self.check_writable(&place).then_some(Some(place))
+        self.check_writable(&place).then_some(Some(Eno { target: place, negated }))
     }
 
     pub fn wrong_direction(&mut self, name: &ast::Name, what: &str, is_output: bool) {

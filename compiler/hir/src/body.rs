@@ -343,7 +343,7 @@ pub struct Call {
     /// EN: FALSE skips the call (semantics.md \[S6\]).
     pub en: Option<Expr>,
     /// ENO: catches faults of the call (\[E4\]).
-    pub eno: Option<Place>,
+    pub eno: Option<Eno>,
     /// Where.
     pub span: Span,
 }
@@ -361,7 +361,16 @@ pub struct StdCall {
     /// What is stored after the call: values over the temporaries, of the types of their targets.
     pub outputs: Vec<(Place, Expr)>,
     /// ENO: catches faults of the function.
-    pub eno: Option<Place>,
+    pub eno: Option<Eno>,
+}
+
+/// `ENO => target`.
+#[derive(Debug, Clone)]
+pub struct Eno {
+    /// The BOOL variable.
+    pub target: Place,
+    /// `NOT ENO => target`.
+    pub negated: bool,
 }
 
 /// What is called.

@@ -7,6 +7,7 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::*;
 use crate::place::Found;
+use crate::specials::{self, Special};
 use crate::types::{Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_syntax::ast;
@@ -20,18 +21,6 @@ pub(crate) enum Target {
     /// `REF`, `ADR`, `SIZEOF` and what else is no function of values.
     Special(Special),
     Reported,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Special {
-    /// `REF(x)`, `ADR(x)`.
-    Reference { pointer: bool },
-    /// `SIZEOF(x)`, of a variable or a type.
-    SizeOf,
-    /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`.
-    Bound { upper: bool },
-    /// `__ISVALIDREF(r)`.
-    IsValidRef,
 }
 
 impl<'a> Checker<'_, 'a> {
@@ -185,14 +174,8 @@ impl<'a> Checker<'_, 'a> {
                 }
             };
         }
-        match key.as_str() {
-            "REF" => return Target::Special(Special::Reference { pointer: false }),
-            "ADR" => return Target::Special(Special::Reference { pointer: true }),
-            "SIZEOF" => return Target::Special(Special::SizeOf),
-            "__ISVALIDREF" => return Target::Special(Special::IsValidRef),
-            "LOWER_BOUND" => return Target::Special(Special::Bound { upper: false }),
-            "UPPER_BOUND" => return Target::Special(Special::Bound { upper: true }),
-            _ => {}
+        if let Some(row) = specials::find(&key) {
+            return Target::Special(row.special);
         }
         if let Some(func) = plcc_stdlib::funcs::find(&key) {
             return Target::Standard(func);
@@ -215,7 +198,7 @@ impl<'a> Checker<'_, 'a> {
         }
         let pous = self.cx.pous.iter().filter(|(_, p)| self.cx.defs.pous[**p].kind == PouKind::Function);
         let mut names: Vec<&str> = pous.map(|(n, _)| n.as_str()).collect();
-        for name in plcc_stdlib::funcs::names() {
+        for name in plcc_stdlib::funcs::names().chain(specials::SPECIALS.iter().map(|row| row.name)) {
             names.push(name);
         }
         if let Some(scope) = self.scope {

@@ -228,7 +228,6 @@ pub(crate) fn new_var<'a>(
         address: None,
         open_address: None,
         init: Init::Default,
-        refers_to: None,
         address_taken: false,
         span,
     });
@@ -249,6 +248,10 @@ fn qualify(cx: &mut Cx, var: VarId, section: &ast::VarSection) {
 
 fn locate(cx: &mut Cx, var: VarId, decl: &ast::VarDecl) {
     let Some((text, span)) = &decl.at else { return };
+    // It has no text where the address was reported.
+    if text.is_empty() {
+        return;
+    }
     if let Some(area) = crate::address::open(text) {
         cx.defs.vars[var].open_address = Some(area);
         return;

@@ -3,6 +3,7 @@
 use crate::collect::charts::ChartOptions;
 use crate::defs::*;
 use crate::init::Init;
+use crate::initial_references::{Home, Noted};
 use crate::types::{Type, TypeId, Types};
 use index_vec::IndexVec;
 use plcc_diag::{Diagnostic, Diagnostics, FileId, Span};
@@ -97,8 +98,14 @@ pub(crate) struct Cx<'a> {
     pub type_slots: Vec<TypeSlot<'a>>,
     /// Values of all enumerations by name.
     pub enum_values: FxHashMap<SmolStr, Vec<(EnumId, i128)>>,
+    /// Initialisers of references, for `Defs::references`.
+    pub noted: IndexVec<ReferenceId, Noted<'a>>,
+    /// Those that also are part of what another initial value copies.
+    pub copied_references: Vec<(ReferenceId, &'a ast::Expr, Home)>,
     pub var_slots: IndexVec<VarId, VarSlot<'a>>,
     pub pou_slots: IndexVec<PouId, PouSlot<'a>>,
+    /// Where the components of a structure and the variables of an instance stand, by name.
+    components: FxHashMap<TypeId, FxHashMap<SmolStr, usize>>,
     /// Types written once and used by several names (`a, b : (Red, Green)`).
     pub type_cache: FxHashMap<*const ast::TypeExpr, Resolved>,
     /// The hidden bounds of parameters that are ARRAY [*].
@@ -140,8 +147,11 @@ impl<'a> Cx<'a> {
             types: FxHashMap::default(),
             type_slots: Vec::new(),
             enum_values: FxHashMap::default(),
+            noted: IndexVec::new(),
+            copied_references: Vec::new(),
             var_slots: IndexVec::new(),
             pou_slots: IndexVec::new(),
+            components: FxHashMap::default(),
             type_cache: FxHashMap::default(),
             open_bounds: FxHashMap::default(),
             codesys_only: 0,
@@ -189,6 +199,35 @@ impl<'a> Cx<'a> {
 
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.diags.push(diagnostic);
+    }
+
+    /// The index of a component of a structure, or of a variable of an instance in `Pou::vars`.
+    pub fn component(&mut self, ty: TypeId, name: &str) -> Option<usize> {
+        if !self.components.contains_key(&ty) {
+            let names: FxHashMap<SmolStr, usize> = match self.defs.types.get(ty) {
+                Type::Struct(id) => {
+                    let fields = self.defs.structs[*id].fields.iter().enumerate();
+                    fields.map(|(n, field)| (fold(&field.name), n)).collect()
+                }
+                Type::Instance(pou) => {
+                    let vars = self.defs.pous[*pou].vars.iter().enumerate();
+                    vars.map(|(n, var)| (fold(&self.defs.vars[*var].name), n)).collect()
+                }
+                _ => return None,
+            };
+            // A structure that is still being resolved has none yet.
+            if names.is_empty() {
+                return None;
+            }
+            self.components.insert(ty, names);
+        }
+        self.components[&ty].get(&fold(name)).copied()
+    }
+
+    /// The number of a value of an enumeration.
+    pub fn enum_value(&self, id: EnumId, name: &str) -> Option<i128> {
+        let named = self.enum_values.get(&fold(name))?;
+        named.iter().find(|(of, _)| *of == id).map(|(_, number)| *number)
     }
 
     /// The ACTION of a POU, also one that shares its name with a step.
@@ -250,7 +289,7 @@ pub fn similar<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> Option
     names
         .filter(|n| !n.starts_with('$'))
         .map(|n| (strsim::osa_distance(&wanted, &n.to_ascii_uppercase()), n))
-        .filter(|(d, _)| *d <= limit)
+        .filter(|(d, n)| *d <= limit && *d < n.chars().count())
         // Of equally near ones that which begins alike.
         .min_by_key(|(d, n)| (*d, !n.get(..1).is_some_and(|c| wanted.starts_with(&c.to_ascii_uppercase())), *n))
         .map(|(_, n)| n.to_string())

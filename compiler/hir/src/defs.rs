@@ -1,6 +1,6 @@
 //! Everything that is declared: POUs, variables, structures, enumerations, by typed ids.
 
-use crate::body::Body;
+use crate::body::{Body, Place};
 use crate::chart::Chart;
 use crate::init::Init;
 use crate::types::{TypeId, Types};
@@ -27,6 +27,10 @@ index_vec::define_index_type! {
     /// An enumeration.
     pub struct EnumId = u32;
 }
+index_vec::define_index_type! {
+    /// A reference that has an initial value.
+    pub struct ReferenceId = u32;
+}
 
 /// All declarations of one compilation.
 #[derive(Debug, Clone, Default)]
@@ -41,6 +45,9 @@ pub struct Defs {
     pub structs: IndexVec<StructId, StructDef>,
     /// Enumerations.
     pub enums: IndexVec<EnumId, EnumDef>,
+    /// To what references refer initially: a variable, then components and constant indices; `None` is NULL. A variable that
+    /// is not global is one of the instance whose declaration says so; what a TYPE says refers to globals only.
+    pub references: IndexVec<ReferenceId, Option<Place>>,
     /// VAR_GLOBALs, in order of declaration, constants too.
     pub globals: Vec<VarId>,
     /// Checked bodies, by POU.
@@ -130,8 +137,6 @@ pub struct Var {
     pub open_address: Option<Area>,
     /// The initial value; complete, with the type's own where none is written.
     pub init: Init,
-    /// A reference that is initialised: `r : REF_TO INT := REF(x)`. A variable, then components and constant indices.
-    pub refers_to: Option<Box<crate::body::Place>>,
     /// `REF(x)`, `ADR(x)` occurs: lies in the addressable part of the region (semantics.md \[R2\]).
     pub address_taken: bool,
     /// Where its name is declared.

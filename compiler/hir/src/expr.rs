@@ -342,12 +342,8 @@ impl<'c, 'a> Checker<'c, 'a> {
             }
             _ if self.is_text(from) || self.is_text(to) => d = d.help_if(self.text_help(&expr, from, to)),
             (Type::Enum(_), Type::Enum(_)) => d = d.help("values of different enumerations do not mix"),
-            (Type::Enum(id), Type::Elem(b)) => {
-                let base = self.cx.defs.enums[*id].base;
-                d = d.help(format!(
-                    "an enumeration is no number; {}(...) converts it",
-                    rules::conversion_name(base, *b)
-                ));
+            (Type::Enum(_), Type::Elem(b)) => {
+                d = d.help(format!("an enumeration is no number; TO_{}(...) converts it", b.name()));
             }
             (Type::Elem(_), Type::Enum(id)) => {
                 d = d.help(format!("use one of its values: {}", self.value_names(*id)));
@@ -360,6 +356,27 @@ impl<'c, 'a> Checker<'c, 'a> {
             (_, Type::Ref { kind: RefKind::ReferenceTo, .. }) => {
                 d = d.help("a REFERENCE TO is given a variable of the type that it refers to");
             }
+            (_, Type::Ref { kind, target }) => {
+                let of = if *kind == RefKind::PointerTo { "ADR" } else { "REF" };
+                d = d.help(match &expr.kind {
+                    ExprKind::Read(place) if from == *target => {
+                        format!("`{of}({})` is the place of the variable", self.place_text(place))
+                    }
+                    _ => format!("{} is given {of}(variable), or NULL", kind.keyword()),
+                });
+            }
+            (Type::Ref { target, .. }, _) if *target == to => {
+                let held = if let ExprKind::Read(place) = &expr.kind { self.place_text(place) } else { "r".into() };
+                d = d.help(format!("`{held}^` is the variable to which it refers"));
+            }
+            (_, Type::Instance(pou)) => {
+                let of = &self.cx.defs.pous[*pou];
+                d = d.help(format!("an instance of {} is called, it takes no value: `name(input := value)`", of.name));
+            }
+            (Type::Array { .. }, _) => d = d.help("an element of an array is written with its index: `a[1]`"),
+            (_, Type::Array { .. }) => d = d.help("the elements are assigned one by one, for example in a FOR"),
+            (_, Type::Struct(_)) => d = d.help("the components are assigned one by one: `s.a := 1;`"),
+            (Type::Struct(_), _) => d = d.help("a component is written with a point: `s.a`"),
             (Type::Instance(pou), _) => {
                 let outputs: Vec<&str> = self.cx.defs.pous[*pou]
                     .vars
@@ -513,7 +530,7 @@ impl<'c, 'a> Checker<'c, 'a> {
     /// `Color#Red`.
     fn qualified(&mut self, ty: &ast::Name, value: &ast::Name, span: Span) -> Operand {
         let Some(&slot) = self.cx.types.get(&fold(&ty.text)) else {
-            let hint = similar(&ty.text, self.cx.types.keys().map(|k| k.as_str()));
+            let hint = similar(&ty.text, self.cx.type_slots.iter().map(|t| t.decl.name.text.as_str()));
             self.report(
                 Diagnostic::new(codes::UNKNOWN_TYPE, ty.span, format!("there is no type `{}`", ty.text))
                     .help_if(hint.map(|h| format!("did you mean `{h}`?"))),
@@ -536,8 +553,8 @@ impl<'c, 'a> Checker<'c, 'a> {
             return Operand::Error;
         };
         let def = &self.cx.defs.enums[id];
-        match def.values.iter().find(|(n, _, _)| n.eq_ignore_ascii_case(&value.text)) {
-            Some((_, number, _)) => Operand::value(ExprKind::Const(*number as u64 & def.base.repr().mask()), ty, span),
+        match self.cx.enum_value(id, &value.text) {
+            Some(number) => Operand::value(ExprKind::Const(number as u64 & def.base.repr().mask()), ty, span),
             None => {
                 let hint = similar(&value.text, def.values.iter().map(|(n, _, _)| n.as_str()));
                 let d = Diagnostic::new(

@@ -22,6 +22,7 @@ pub fn foreign_word(word: &str) -> Option<&'static str> {
         "BREAK" => "a branch of a CASE ends before the next value; EXIT leaves a loop",
         "DEFAULT" | "OTHERS" | "OTHERWISE" => "all other values of a CASE stand behind ELSE, without `:`",
         "NIL" | "NULLPTR" | "NONE" => "a reference to nothing is NULL",
+        "RETURN" | "RESULT" => "a function gives its value by its name: `Name := value;`",
         "THIS" | "SELF" => "inside a POU its variables are named alone",
         word => {
             let digits = word.strip_prefix("TIME").or(word.strip_prefix('T'))?;

@@ -4,8 +4,9 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
 use crate::init::Init;
-use crate::types::{RefKind, Type, TypeId, Types};
-use plcc_diag::{Diagnostic, codes};
+use crate::initial_references::Home;
+use crate::types::{Type, TypeId, Types};
+use plcc_diag::{Diagnostic, Span, codes};
 use plcc_syntax::ast;
 use rustc_hash::FxHashMap;
 
@@ -36,7 +37,7 @@ impl<'a> Cx<'a> {
             _ => Init::Default,
         };
         let written = self.var_slots[var].decl.and_then(|(_, init)| init);
-        let (ty, owner, section) = (self.defs.vars[var].ty, self.defs.vars[var].owner, self.defs.vars[var].section);
+        let (ty, section) = (self.defs.vars[var].ty, self.defs.vars[var].section);
         self.defs.vars[var].init = match written {
             Some(init) if section == Section::InOut => {
                 self.push(
@@ -45,27 +46,10 @@ impl<'a> Cx<'a> {
                 );
                 Init::Default
             }
-            Some(init) => match self.reference_in(init, ty) {
-                Some(e) => {
-                    let refers_to = Checker::constant(self, owner).initial_reference(e, ty, section);
-                    self.defs.vars[var].refers_to = refers_to.map(Box::new);
-                    Init::Default
-                }
-                None => self.initial(init, ty, owner),
-            },
+            Some(init) => self.initial(init, ty, Home::Variable(var)),
             None => from_type,
         };
         self.var_slots[var].init = State::Done(());
-    }
-
-    /// To what an initialiser lets a variable of a reference type refer, as written; `REF=` belongs to REFERENCE TO.
-    fn reference_in(&self, init: &'a ast::Init, ty: TypeId) -> Option<&'a ast::Expr> {
-        let Type::Ref { kind, .. } = *self.defs.types.get(ty) else { return None };
-        match &init.kind {
-            ast::InitKind::Expr(e) => Some(e),
-            ast::InitKind::Reference(e) if kind == RefKind::ReferenceTo => Some(e),
-            _ => None,
-        }
     }
 
     /// Initial values of all variables.
@@ -73,31 +57,22 @@ impl<'a> Cx<'a> {
         for var in self.defs.vars.indices() {
             self.var_init(var);
         }
+        self.settle_references();
     }
 
     /// An initialiser against the type of what it initialises.
-    pub fn initial(&mut self, init: &'a ast::Init, ty: TypeId, scope: Option<PouId>) -> Init {
+    pub fn initial(&mut self, init: &'a ast::Init, ty: TypeId, home: Home) -> Init {
         if ty == Types::ERROR {
             return Init::Default;
         }
+        if let Some(reference) = self.note_reference(init, ty, home) {
+            return reference;
+        }
         match self.defs.types.get(ty).clone() {
-            Type::Array { dims, elem } => {
-                let count: i64 = dims.iter().map(|(l, h)| h - l + 1).product();
-                self.initial_array(init, elem, count as u32, scope)
-            }
-            Type::Struct(id) => {
-                let fields: Vec<_> = self.defs.structs[id].fields.iter().map(|f| (f.name.clone(), f.ty)).collect();
-                self.initial_fields(init, ty, &fields, scope)
-            }
-            Type::Instance(pou) => {
-                let vars = self.defs.pous[pou].vars.clone();
-                vars.iter().for_each(|v| self.var_type(*v));
-                let fields: Vec<_> =
-                    vars.iter().map(|v| (self.defs.vars[*v].name.clone(), self.defs.vars[*v].ty)).collect();
-                self.initial_fields(init, ty, &fields, scope)
-            }
+            Type::Array { dims, elem } => self.initial_array(init, ty, &dims, elem, home),
+            Type::Struct(_) | Type::Instance(_) => self.initial_fields(init, ty, home),
             _ => match &init.kind {
-                ast::InitKind::Expr(e) => Checker::constant(self, scope).const_init(e, ty),
+                ast::InitKind::Expr(e) => Checker::constant(self, home.scope(&self.defs)).const_init(e, ty),
                 _ => {
                     self.wrong_form(init, ty);
                     Init::Default
@@ -119,16 +94,56 @@ impl<'a> Cx<'a> {
         );
     }
 
-    fn initial_fields(
-        &mut self,
-        init: &'a ast::Init,
-        ty: TypeId,
-        fields: &[(smol_str::SmolStr, TypeId)],
-        scope: Option<PouId>,
-    ) -> Init {
+    /// The initial value of another variable, for the whole of an array, a structure or an instance.
+    fn copied_init(&mut self, e: &'a ast::Expr, ty: TypeId, home: Home) -> Init {
+        let init = Checker::constant(self, home.scope(&self.defs)).const_init(e, ty);
+        self.note_copies(&init, e, home);
+        init
+    }
+
+    /// The type of a component of a structure or instance, by its index.
+    fn component_type(&mut self, ty: TypeId, index: usize) -> TypeId {
+        match *self.defs.types.get(ty) {
+            Type::Struct(id) => self.defs.structs[id].fields[index].ty,
+            Type::Instance(pou) => {
+                let var = self.defs.pous[pou].vars[index];
+                self.var_type(var);
+                self.defs.vars[var].ty
+            }
+            _ => Types::ERROR,
+        }
+    }
+
+    /// The component that is most likely meant by a name.
+    fn similar_component(&self, ty: TypeId, name: &str) -> Option<String> {
+        match self.defs.types.get(ty) {
+            Type::Struct(id) => similar(name, self.defs.structs[*id].fields.iter().map(|f| f.name.as_str())),
+            Type::Instance(pou) => {
+                similar(name, self.defs.pous[*pou].vars.iter().map(|v| self.defs.vars[*v].name.as_str()))
+            }
+            _ => None,
+        }
+    }
+
+    /// `(speed = 1.0)`: a component that is compared instead of given a value.
+    fn compared_component(&mut self, e: &'a ast::Expr, ty: TypeId) -> bool {
+        let ast::ExprKind::Binary(ast::BinaryOp::Eq, at, left, _) = &e.kind else { return false };
+        let ast::ExprKind::Name(name) = &left.kind else { return false };
+        if self.component(ty, &name.text).is_none() {
+            return false;
+        }
+        self.push(
+            Diagnostic::new(codes::EQUALS_FOR_ASSIGN, *at, "`=` compares, it gives no value to a component")
+                .help(format!("write `{} := ...`", name.text)),
+        );
+        true
+    }
+
+    fn initial_fields(&mut self, init: &'a ast::Init, ty: TypeId, home: Home) -> Init {
         let parts = match &init.kind {
             ast::InitKind::Struct(parts) => parts,
-            ast::InitKind::Expr(e) => return Checker::constant(self, scope).const_init(e, ty),
+            ast::InitKind::Expr(e) if self.compared_component(e, ty) => return Init::Default,
+            ast::InitKind::Expr(e) => return self.copied_init(e, ty, home),
             ast::InitKind::Array { .. } | ast::InitKind::Reference(_) => {
                 self.wrong_form(init, ty);
                 return Init::Default;
@@ -137,8 +152,8 @@ impl<'a> Cx<'a> {
         let mut seen = FxHashMap::default();
         let mut values = Vec::new();
         for (name, value) in parts {
-            let Some(index) = fields.iter().position(|(n, _)| n.eq_ignore_ascii_case(&name.text)) else {
-                let hint = similar(&name.text, fields.iter().map(|(n, _)| n.as_str()));
+            let Some(index) = self.component(ty, &name.text) else {
+                let hint = self.similar_component(ty, &name.text);
                 let message = format!("{} has no component `{}`", self.type_name(ty), name.text);
                 self.push(
                     Diagnostic::new(codes::UNKNOWN_MEMBER, name.span, message)
@@ -153,28 +168,56 @@ impl<'a> Cx<'a> {
                 );
                 continue;
             }
-            let value = self.initial(value, fields[index].1, scope);
+            let component = self.component_type(ty, index);
+            let value = self.initial(value, component, home);
             values.push((index as u32, value));
         }
         Init::Fields(values)
     }
 
-    fn initial_array(&mut self, init: &'a ast::Init, elem: TypeId, count: u32, scope: Option<PouId>) -> Init {
+    /// The first list among initial values for elements that are no arrays.
+    fn list_in_list(&self, elems: &[ast::InitElem], elem: TypeId) -> Option<Span> {
+        if matches!(self.defs.types.get(elem), Type::Array { .. }) {
+            return None;
+        }
+        elems.iter().find_map(|part| match part {
+            ast::InitElem::One(value) if matches!(value.kind, ast::InitKind::Array { .. }) => Some(value.span),
+            _ => None,
+        })
+    }
+
+    fn initial_array(
+        &mut self,
+        init: &'a ast::Init,
+        ty: TypeId,
+        dims: &[(i64, i64)],
+        elem: TypeId,
+        home: Home,
+    ) -> Init {
+        let count = dims.iter().map(|(l, h)| h - l + 1).product::<i64>() as u32;
         let ast::InitKind::Array { elems, .. } = &init.kind else {
             // One value without brackets for an array of one, as Ed. 2 writes it.
             return match &init.kind {
                 ast::InitKind::Expr(e) if matches!(e.kind, ast::ExprKind::Name(_) | ast::ExprKind::Member(..)) => {
                     let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
-                    Checker::constant(self, scope).const_init(e, ty)
+                    self.copied_init(e, ty, home)
                 }
-                ast::InitKind::Expr(_) if count == 1 => Init::Array(vec![(1, self.initial(init, elem, scope))]),
+                ast::InitKind::Expr(_) if count == 1 => Init::Array(vec![(1, self.initial(init, elem, home))]),
                 _ => {
-                    let ty = self.defs.types.intern(Type::Array { dims: vec![(1, i64::from(count))], elem });
                     self.wrong_form(init, ty);
                     Init::Default
                 }
             };
         };
+        if dims.len() > 1
+            && let Some(list) = self.list_in_list(elems, elem)
+        {
+            self.push(
+                Diagnostic::new(codes::BAD_INITIALISER, list, "a list for each row of an array of several dimensions")
+                    .help("its elements stand in one list, the last subscript running fastest: `[1, 2, 3, 4]`"),
+            );
+            return Init::Default;
+        }
         let mut runs: Vec<(u32, Init)> = Vec::new();
         let mut total: u64 = 0;
         let mut push = |runs: &mut Vec<(u32, Init)>, n: u32, value: Init| {
@@ -190,11 +233,11 @@ impl<'a> Cx<'a> {
         for part in elems {
             match part {
                 ast::InitElem::One(value) => {
-                    let value = self.initial(value, elem, scope);
+                    let value = self.initial(value, elem, home);
                     push(&mut runs, 1, value);
                 }
                 ast::InitElem::Repeat(times, values) => {
-                    let Some(n) = self.const_integer(times, scope) else { continue };
+                    let Some(n) = self.const_integer(times, home.scope(&self.defs)) else { continue };
                     if n < 0 || n > i128::from(u32::MAX) {
                         self.push(
                             Diagnostic::new(codes::BAD_INITIALISER, times.span, format!("{n} is no repetition count"))
@@ -202,7 +245,7 @@ impl<'a> Cx<'a> {
                         );
                         continue;
                     }
-                    let group: Vec<Init> = values.iter().map(|v| self.initial(v, elem, scope)).collect();
+                    let group: Vec<Init> = values.iter().map(|v| self.initial(v, elem, home)).collect();
                     match group.as_slice() {
                         [] => push(&mut runs, n as u32, Init::Default),
                         [one] => push(&mut runs, n as u32, one.clone()),

@@ -8,7 +8,8 @@ use crate::body::*;
 use crate::cx::{Cx, Unit};
 use crate::defs::*;
 use crate::foreign_code;
-use crate::types::Type;
+use crate::init::Init;
+use crate::types::{Type, TypeId};
 use crate::visit::{self, Use, Visitor};
 use plcc_diag::{Code, Diagnostic, FileId, Severity, Span, codes};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -128,9 +129,22 @@ impl Lint<'_, '_> {
             || var.address.is_some()
             || var.open_address.is_some()
             || var.address_taken
-            || var.refers_to.is_some()
             || instance
+            || var.init != Init::Default
+            || self.has_values(var.ty)
             || self.cx.has_initialiser(id))
+    }
+
+    /// Whether a type gives its variables initial values of its own.
+    fn has_values(&self, ty: TypeId) -> bool {
+        match self.cx.defs.types.get(ty) {
+            Type::Struct(id) => {
+                let fields = &self.cx.defs.structs[*id].fields;
+                fields.iter().any(|f| f.init != Init::Default || self.has_values(f.ty))
+            }
+            Type::Array { elem, .. } => self.has_values(*elem),
+            _ => false,
+        }
     }
 }
 

@@ -190,6 +190,10 @@ impl<'a> Checker<'_, 'a> {
                         Found::Pou(pou) if self.cx.defs.pous[pou].kind == PouKind::Program => {
                             "programs share variables as VAR_GLOBAL; a FUNCTION_BLOCK shows its outputs".into()
                         }
+                        // It was meant as the result.
+                        Found::Pou(pou) if self.scope == Some(pou) => {
+                            format!("declare the type of the result: `FUNCTION {} : INT`", name.text)
+                        }
                         Found::Pou(_) => format!("call it: `{}(...)`", name.text),
                         Found::Action(_) => format!("call it: `{}();`", name.text),
                         Found::Type => format!("declare a variable of it: `x : {};`", name.text),
@@ -225,8 +229,9 @@ impl<'a> Checker<'_, 'a> {
         match self.cx.defs.types.get(base.ty).clone() {
             Type::Error => None,
             Type::Struct(id) => {
+                let found = self.cx.component(base.ty, &name.text);
                 let def = &self.cx.defs.structs[id];
-                let Some(index) = def.fields.iter().position(|f| f.name.eq_ignore_ascii_case(&name.text)) else {
+                let Some(index) = found else {
                     let hint = similar(&name.text, def.fields.iter().map(|f| f.name.as_str()));
                     let d = Diagnostic::new(
                         codes::UNKNOWN_MEMBER,
@@ -236,7 +241,10 @@ impl<'a> Checker<'_, 'a> {
                     .also(def.span, "declared here")
                     .help(match hint {
                         Some(near) => format!("did you mean `{near}`?"),
-                        None => format!("its components are {}", list(def.fields.iter().map(|f| f.name.as_str()))),
+                        None => format!(
+                            "its components are {}",
+                            list(def.fields.iter().map(|f| f.name.as_str()).filter(|n| !n.starts_with('$')))
+                        ),
                     });
                     self.report(d);
                     return None;
@@ -311,6 +319,13 @@ impl<'a> Checker<'_, 'a> {
                 let help = match self.cx.defs.types.get(base.ty) {
                     Type::Array { .. } | Type::AnyArray { .. } => {
                         format!("an element has components: `{}[...].{}`", self.place_text(&base), name.text)
+                    }
+                    Type::Enum(id) => {
+                        let values = self.cx.defs.enums[*id].values.iter().map(|(n, _, _)| n.as_str());
+                        match similar(&name.text, values.clone()) {
+                            Some(near) => format!("did you mean `{near}`?"),
+                            None => format!("its values are {}", list(values)),
+                        }
                     }
                     _ => "structures, unions and instances of function blocks have components".into(),
                 };

@@ -13,7 +13,9 @@ pub fn print(defs: &Defs) -> String {
     let mut p = Printer { defs, out: String::new(), indent: 0 };
     for def in &defs.structs {
         p.line(&format!("{} {}", if def.union { "UNION" } else { "STRUCT" }, def.name));
-        def.fields.iter().for_each(|f| p.line(&format!("  {} : {}{}", f.name, type_name(defs, f.ty), init(&f.init))));
+        for f in &def.fields {
+            p.line(&format!("  {} : {}{}", f.name, type_name(defs, f.ty), p.init(&f.init)));
+        }
     }
     for def in &defs.enums {
         let values: Vec<String> = def.values.iter().map(|(n, v, _)| format!("{n} := {v}")).collect();
@@ -46,31 +48,6 @@ pub fn print_application(app: &Application, defs: &Defs) -> String {
     out
 }
 
-fn init(init: &Init) -> String {
-    match init {
-        Init::Default => String::new(),
-        Init::Scalar(raw) => format!(" := {raw:#x}"),
-        other => format!(" := {}", init_text(other)),
-    }
-}
-
-fn init_text(init: &Init) -> String {
-    match init {
-        Init::Default => "default".into(),
-        Init::Scalar(raw) => format!("{raw:#x}"),
-        Init::String(s) => format!("{:?}", String::from_utf8_lossy(s)),
-        Init::WString(s) => format!("{:?}", String::from_utf16_lossy(s)),
-        Init::Array(runs) => {
-            let runs: Vec<String> = runs.iter().map(|(n, v)| format!("{n}({})", init_text(v))).collect();
-            format!("[{}]", runs.join(", "))
-        }
-        Init::Fields(fields) => {
-            let fields: Vec<String> = fields.iter().map(|(i, v)| format!("#{i} := {}", init_text(v))).collect();
-            format!("({})", fields.join(", "))
-        }
-    }
-}
-
 struct Printer<'d> {
     defs: &'d Defs,
     out: String,
@@ -82,12 +59,41 @@ impl Printer<'_> {
         let _ = writeln!(self.out, "{:width$}{text}", "", width = self.indent * 2);
     }
 
+    fn init(&self, init: &Init) -> String {
+        match init {
+            Init::Default => String::new(),
+            other => format!(" := {}", self.init_text(other)),
+        }
+    }
+
+    fn init_text(&self, init: &Init) -> String {
+        match init {
+            Init::Default => "default".into(),
+            Init::Scalar(raw) => format!("{raw:#x}"),
+            Init::String(s) => format!("{:?}", String::from_utf8_lossy(s)),
+            Init::WString(s) => format!("{:?}", String::from_utf16_lossy(s)),
+            Init::Reference(id) => match &self.defs.references[*id] {
+                Some(place) => format!("ref({})", self.place(place)),
+                None => "null".into(),
+            },
+            Init::Array(runs) => {
+                let runs: Vec<String> = runs.iter().map(|(n, v)| format!("{n}({})", self.init_text(v))).collect();
+                format!("[{}]", runs.join(", "))
+            }
+            Init::Fields(fields) => {
+                let fields: Vec<String> =
+                    fields.iter().map(|(i, v)| format!("#{i} := {}", self.init_text(v))).collect();
+                format!("({})", fields.join(", "))
+            }
+        }
+    }
+
     fn variable(&mut self, section: &str, var: VarId) {
         let v = &self.defs.vars[var];
         let flags = [(v.constant, " CONSTANT"), (v.retain, " RETAIN")];
         let flags: String = flags.iter().filter(|(on, _)| *on).map(|(_, t)| *t).collect();
         let ty = type_name(self.defs, v.ty);
-        self.line(&format!("{section}{flags} {} : {ty}{}", v.name, init(&v.init)));
+        self.line(&format!("{section}{flags} {} : {ty}{}", v.name, self.init(&v.init)));
     }
 
     fn pou(&mut self, id: PouId, pou: &Pou) {
@@ -276,7 +282,9 @@ impl Printer<'_> {
             let convert = o.convert.map(|(a, b)| format!("{}_TO_{} ", a.name(), b.name())).unwrap_or_default();
             format!("{not}{} => {convert}{}", var(o.output), self.place(&o.target))
         }));
-        parts.extend(call.eno.iter().map(|p| format!("ENO => {}", self.place(p))));
+        parts.extend(
+            call.eno.iter().map(|e| format!("{}ENO => {}", if e.negated { "NOT " } else { "" }, self.place(&e.target))),
+        );
         format!("{callee}({})", parts.join(", "))
     }
 
@@ -287,7 +295,9 @@ impl Printer<'_> {
         before.extend(call.arguments.iter().map(|(t, e)| format!("t{} := {}", t.index(), self.expr(e))));
         let mut after: Vec<String> = Vec::new();
         after.extend(call.outputs.iter().map(|(p, e)| format!("{} => {}", self.expr(e), self.place(p))));
-        after.extend(call.eno.iter().map(|p| format!("ENO => {}", self.place(p))));
+        after.extend(
+            call.eno.iter().map(|e| format!("{}ENO => {}", if e.negated { "NOT " } else { "" }, self.place(&e.target))),
+        );
         let value = call.value.as_ref().map(|v| self.expr(v)).unwrap_or_default();
         format!("[{}] {value} [{}]", before.join("; "), after.join("; "))
     }

@@ -225,48 +225,6 @@ impl<'a> Checker<'_, 'a> {
         Operand::value(ExprKind::Op(Op::Ne, OFFSET, vec![retype(held, ty), null]), BOOL(), span)
     }
 
-    /// To what a reference in `section` refers initially; `None` for NULL. Messages are given.
-    pub fn initial_reference(&mut self, e: &'a ast::Expr, ty: TypeId, section: Section) -> Option<Place> {
-        let bound = self.is_reference_to(ty);
-        let mut expr = self.value(e, ty);
-        while let ExprKind::Retype(inner) | ExprKind::Convert(_, _, inner) = expr.kind {
-            expr = *inner;
-        }
-        let place = match expr.kind {
-            ExprKind::Const(0) | ExprKind::Error => return None,
-            ExprKind::RefOf(place) if self.stays_in_place(&place, section) => return Some(place),
-            ExprKind::RefOf(place) => place.span,
-            _ => e.span,
-        };
-        self.report(
-            Diagnostic::new(codes::NOT_CONSTANT, place, "this is known only at run time, a constant is needed").help(
-                if bound {
-                    "a REFERENCE TO is initialised with a global variable or one of the same POU, or not at all"
-                } else {
-                    "a reference is initialised with REF or ADR of a global variable or of one of the same POU, with \
-                     NULL, or not at all"
-                },
-            ),
-        );
-        None
-    }
-
-    /// Whether the address of a place is the same as long as its instance exists.
-    fn stays_in_place(&self, place: &Place, section: Section) -> bool {
-        let Root::Var(var) = place.root else { return false };
-        let root = &self.cx.defs.vars[var];
-        let of_call = |section| matches!(section, Section::Temp | Section::InOut);
-        let stays = root.section == Section::Global || (!of_call(root.section) && !of_call(section));
-        stays
-            && place.steps.iter().all(|step| match step {
-                Step::Field(_) => true,
-                Step::Member(var) => self.cx.defs.vars[*var].section != Section::InOut,
-                Step::Index(indices, _) => indices.iter().all(|i| matches!(i.kind, ExprKind::Const(_))),
-                Step::OpenIndex(..) | Step::Character { .. } | Step::Deref => false,
-                Step::Bit(_) | Step::Part(..) | Step::Flags(_) => false,
-            })
-    }
-
     /// Whether a value of a reference type may stand for another type, or another for it; `None` if neither is a
     /// reference. What converts is the same number under another type.
     pub fn coerce_reference(&mut self, expr: &Expr, from: TypeId, to: TypeId, span: Span) -> Option<Expr> {

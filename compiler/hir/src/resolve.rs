@@ -5,6 +5,7 @@ use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
 use crate::init::Init;
+use crate::initial_references::Home;
 use crate::types::{RefKind, Type, TypeId, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
@@ -128,8 +129,9 @@ impl<'a> Cx<'a> {
             return plain(Types::elem(elem));
         }
         let standard = plcc_stdlib::elem::ALL.iter().map(|e| e.name()).chain(["STRING", "WSTRING"]);
-        let pous = self.pous.iter().filter(|(_, p)| self.defs.pous[**p].kind == PouKind::FunctionBlock);
-        let names = self.types.keys().chain(pous.map(|(n, _)| n)).map(|n| n.as_str()).chain(standard);
+        let pous = self.pous.values().map(|p| &self.defs.pous[*p]).filter(|p| p.kind == PouKind::FunctionBlock);
+        let types = self.type_slots.iter().map(|t| t.decl.name.text.as_str());
+        let names = types.chain(pous.map(|p| p.name.as_str())).chain(standard);
         let hint = iec_name(&key).map(str::to_string).or_else(|| similar(&name.text, names));
         self.push(Diagnostic::new(codes::UNKNOWN_TYPE, name.span, format!("there is no type `{}`", name.text)).help(
             match hint {
@@ -169,7 +171,7 @@ impl<'a> Cx<'a> {
         let decl = self.type_slots[slot].decl;
         let mut resolved = self.resolve_new(&decl.ty, None, &decl.name.text, Some(slot));
         if let Some(init) = &decl.init {
-            resolved.init = self.initial(init, resolved.ty, None);
+            resolved.init = self.initial(init, resolved.ty, Home::Outside(None));
         }
         // A cycle that was found below has reported itself; the type stays usable.
         self.type_slots[slot].state = State::Done(resolved.clone());
@@ -274,7 +276,7 @@ impl<'a> Cx<'a> {
                 }
                 let resolved = self.resolve_type(&decl.ty, scope, &format!("{name}.{}", field.text));
                 let init = match &decl.init {
-                    Some(init) => self.initial(init, resolved.ty, scope),
+                    Some(init) => self.initial(init, resolved.ty, Home::Outside(scope)),
                     None => resolved.init,
                 };
                 fields.push(Field { name: field.text.clone(), ty: resolved.ty, init, span: field.span });

@@ -11,6 +11,7 @@ use crate::defs::*;
 use crate::types::{Type, TypeId, Types};
 use crate::visit::{self, Use, Visitor};
 use plcc_diag::{Diagnostic, Span, codes};
+use rustc_hash::FxHashSet;
 
 /// Checks an application and gives each resource its globals.
 pub(crate) fn check(cx: &mut Cx, app: &mut Application) {
@@ -86,10 +87,19 @@ fn report_foreign(cx: &mut Cx, app: &Application, number: usize) {
         task.single.iter().for_each(|place| visit::place(place, Use::Read, &mut globals));
     }
     let mut seen = vec![false; cx.defs.pous.len()];
+    let mut held = Held::default();
+    for &var in cx.defs.globals.iter().filter(|var| cx.defs.vars[**var].resource == Some(number as u32)) {
+        held.variable(&cx.defs, var);
+    }
     while let Some(pou) = globals.calls.pop() {
         if !std::mem::replace(&mut seen[pou.index()], true) {
             visit::stmts(&cx.defs.bodies[pou].stmts, &mut globals);
+            cx.defs.pous[pou].vars.iter().for_each(|var| held.variable(&cx.defs, *var));
+            globals.calls.append(&mut held.instances);
         }
+    }
+    for place in held.references.iter().filter_map(|id| cx.defs.references[*id].as_ref()) {
+        visit::place(place, Use::Written, &mut globals);
     }
     let mut told = Vec::new();
     for (var, span) in globals.found {
@@ -110,6 +120,38 @@ fn report_foreign(cx: &mut Cx, app: &Application, number: usize) {
             .also(declared, "declared here")
             .help("declare it in the CONFIGURATION, or one of this name and type in each RESOURCE"),
         );
+    }
+}
+
+/// What variables hold: references with an initial value, and instances.
+#[derive(Default)]
+struct Held {
+    references: Vec<ReferenceId>,
+    instances: Vec<PouId>,
+    types: FxHashSet<TypeId>,
+}
+
+impl Held {
+    fn variable(&mut self, defs: &Defs, var: VarId) {
+        defs.vars[var].init.references(&mut self.references);
+        self.of_type(defs, defs.vars[var].ty);
+    }
+
+    fn of_type(&mut self, defs: &Defs, ty: TypeId) {
+        if !self.types.insert(ty) {
+            return;
+        }
+        match &defs.types[ty] {
+            Type::Array { elem, .. } => self.of_type(defs, *elem),
+            Type::Struct(id) => {
+                for field in &defs.structs[*id].fields {
+                    field.init.references(&mut self.references);
+                    self.of_type(defs, field.ty);
+                }
+            }
+            Type::Instance(pou) => self.instances.push(*pou),
+            _ => {}
+        }
     }
 }
 

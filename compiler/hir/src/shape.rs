@@ -158,6 +158,7 @@ impl Shapes {
         match init {
             Init::Default => !self.of(defs, ty).initialised,
             Init::Scalar(raw) => *raw == 0,
+            Init::Reference(id) => defs.references[*id].is_none(),
             Init::String(s) => s.iter().all(|c| *c == 0),
             Init::WString(s) => s.iter().all(|c| *c == 0),
             Init::Array(runs) => {

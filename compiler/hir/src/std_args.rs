@@ -16,7 +16,7 @@ pub(crate) struct Placed<'a> {
     /// By position of the parameter.
     pub args: Vec<Option<&'a ast::Expr>>,
     pub en: Option<Expr>,
-    pub eno: Option<Place>,
+    pub eno: Option<Eno>,
     /// Outputs that are fetched.
     pub outputs: Vec<(Place, Output)>,
 }
@@ -89,7 +89,7 @@ impl<'a> Checker<'_, 'a> {
                 }
                 ast::ArgKind::Output { negated, name, target } => {
                     if name.text.eq_ignore_ascii_case("ENO") {
-                        match self.eno_target(*negated, name, target.as_ref()) {
+                        match self.eno_target(*negated, target.as_ref()) {
                             Some(target) => placed.eno = target,
                             None => fine = false,
                         }

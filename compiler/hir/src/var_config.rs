@@ -9,6 +9,7 @@ use crate::body::*;
 use crate::cx::*;
 use crate::defs::*;
 use crate::expr::Checker;
+use crate::initial_references::Home;
 use crate::types::{Type, Types};
 use plcc_diag::{Diagnostic, codes};
 use plcc_syntax::ast;
@@ -25,6 +26,7 @@ pub(crate) fn apply<'a>(cx: &mut Cx<'a>, config: &'a ast::Configuration, app: &m
             }
         }
     }
+    cx.settle_references();
 }
 
 /// Reports variables whose address was left open and which no VAR_CONFIG placed.
@@ -71,10 +73,10 @@ fn configure<'a>(cx: &mut Cx<'a>, decl: &'a ast::VarDecl, app: &mut Application)
     }
     let ty = cx.defs.vars[var].ty;
     if let Some(init) = &decl.init {
-        let init = cx.initial(init, ty, None);
+        let init = cx.initial(init, ty, Home::Outside(None));
         program_of(app, program).initial.push((path.clone(), init));
     }
-    let Some((text, span)) = &decl.at else { return };
+    let Some((text, span)) = decl.at.as_ref().filter(|(text, _)| !text.is_empty()) else { return };
     let address = match crate::address::parse(text) {
         Ok(address) => address,
         Err(message) => return cx.push(Diagnostic::new(codes::BAD_ADDRESS, *span, format!("`{text}`: {message}"))),

@@ -95,7 +95,12 @@ pub fn expr(e: &Expr, v: &mut impl Visitor) {
         ExprKind::StdCall(inner) => {
             inner.en.iter().chain(inner.arguments.iter().map(|(_, e)| e)).for_each(|e| expr(e, v));
             inner.value.iter().chain(inner.outputs.iter().map(|(_, e)| e)).for_each(|e| expr(e, v));
-            inner.outputs.iter().map(|(p, _)| p).chain(&inner.eno).for_each(|p| place(p, Use::Written, v));
+            inner
+                .outputs
+                .iter()
+                .map(|(p, _)| p)
+                .chain(inner.eno.iter().map(|e| &e.target))
+                .for_each(|p| place(p, Use::Written, v));
         }
         ExprKind::Choose { selector, choices } => {
             expr(selector, v);
@@ -136,5 +141,5 @@ fn call(c: &Call, v: &mut impl Visitor) {
     c.inputs.iter().for_each(|(_, e)| expr(e, v));
     c.in_outs.iter().for_each(|(_, p)| place(p, Use::Connected, v));
     c.outputs.iter().for_each(|o| place(&o.target, Use::Written, v));
-    c.eno.iter().for_each(|p| place(p, Use::Written, v));
+    c.eno.iter().for_each(|e| place(&e.target, Use::Written, v));
 }

@@ -7,6 +7,7 @@
 //! construct is left to the grammar.
 
 mod bodies;
+mod braces;
 mod declarations;
 mod ends;
 mod il;
@@ -15,6 +16,7 @@ mod outside;
 pub(crate) use declarations::section_meant;
 
 use crate::Profile;
+use crate::ast::Pragma;
 use crate::lexer::Lexed;
 use crate::report::Reporter;
 use crate::token::{Tok, Token};
@@ -185,6 +187,8 @@ struct Frame {
     has_else: bool,
     /// CASE: has its OF.
     has_of: bool,
+    /// Its statements stand in braces, which was reported.
+    braced: bool,
     /// This IF stands directly behind an ELSE on the same line.
     behind_else: Option<Token>,
     /// An inner IF behind ELSE took this one's END word, perhaps.
@@ -195,14 +199,17 @@ struct Frame {
 
 impl Frame {
     fn new(block: Construct, opener: Token, indent: Option<u32>, behind_else: Option<Token>) -> Self {
-        let (phase, has_else, has_of) = (Phase::Head, false, false);
-        Self { block, opener, phase, indent, has_else, has_of, behind_else, else_if: None, suspect: None }
+        let (phase, has_else, has_of, braced) = (Phase::Head, false, false, false);
+        Self { block, opener, phase, indent, has_else, has_of, braced, behind_else, else_if: None, suspect: None }
     }
 }
 
 struct Blocks<'a, 'd> {
     text: &'a str,
     tokens: &'a [Token],
+    pragmas: &'a [Pragma],
+    /// Those that lie before the next token.
+    pragmas_read: usize,
     /// See [`Lexed`].
     rest_is_comment: bool,
     /// Where the source begins in the text.
@@ -225,6 +232,8 @@ struct Blocks<'a, 'd> {
     bare_ends: Vec<Token>,
     /// A `;` behind an instruction of IL was reported: once per file.
     told_semicolon: bool,
+    /// BEGINs that were reported and whose END may follow.
+    begun: u32,
     /// How often the file may still be searched for what explains a mistake.
     looks: u32,
 }
@@ -234,6 +243,8 @@ impl<'a, 'd> Blocks<'a, 'd> {
         Self {
             text,
             tokens: &lexed.tokens,
+            pragmas: &lexed.pragmas,
+            pragmas_read: 0,
             rest_is_comment: lexed.rest_is_comment,
             start: 0,
             at: 0,
@@ -247,6 +258,7 @@ impl<'a, 'd> Blocks<'a, 'd> {
             next_end_var: 0,
             bare_ends: Vec::new(),
             told_semicolon: false,
+            begun: 0,
             looks: MAX_LOOKS,
         }
     }
@@ -345,6 +357,9 @@ impl<'a, 'd> Blocks<'a, 'd> {
     }
 
     fn step(&mut self) {
+        if !self.pragmas.is_empty() && self.braces() {
+            return;
+        }
         let t = self.peek(0);
         if let Some(block) = Construct::closed_by(t.kind) {
             return self.end_word(block, 1);

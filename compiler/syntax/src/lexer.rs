@@ -339,7 +339,10 @@ impl Lexer<'_, '_, '_> {
         self.report.push(
             self.report
                 .at(codes::FOREIGN_OPERATOR, start, end, format!("`{written}` is not an operator of IEC 61131-3"))
-                .help(format!("write `{meant}`")),
+                .help(match written {
+                    "==" => "write `=` to compare, `:=` to assign".into(),
+                    _ => format!("write `{meant}`"),
+                }),
         );
         self.push(kind, length);
     }
@@ -403,10 +406,25 @@ impl Lexer<'_, '_, '_> {
             if c == '\0' {
                 message = message.help("this does not look like a text file");
             }
+            if matches!(c, '#' | '$') && self.bytes.get(self.at + 1).is_some_and(u8::is_ascii_hexdigit) {
+                message = message.help("a hexadecimal number is written `16#FF`");
+            }
+            if c == '`' {
+                message = message.help("a text stands in single quotes: 'abc'");
+            }
+            if c == '~' {
+                message = message.help("the opposite is written NOT");
+            }
             if c == '?' {
                 message = message.help("a choice is written with IF, or as SEL(condition, if_false, if_true)");
             }
             self.report.push(message);
+            // A text in quotes of another kind is one mistake.
+            let rest = if c == '`' { &self.text[self.at + length..] } else { "" };
+            let quoted = rest.find(['`', '\n']).filter(|n| rest.as_bytes()[*n] == b'`');
+            if let Some(n) = quoted {
+                return self.push(Tok::Bad, length + n + 1);
+            }
             // A control character was not written by anybody: what stands around it is still what it seems to be.
             if !c.is_control() {
                 return self.push(Tok::Bad, length);

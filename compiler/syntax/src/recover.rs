@@ -121,7 +121,9 @@ impl Recovery<'_, '_> {
         }
         let place = self.place(segment.start);
         // What the lexer has told needs no second message.
-        let told = self.kind(refused.at) == Tok::Bad || self.kind(refused.at.wrapping_sub(1)) == Tok::Bad;
+        let told = self.kind(refused.at) == Tok::Bad
+            || self.kind(refused.at.wrapping_sub(1)) == Tok::Bad
+            || self.tokens.get(refused.at).is_some_and(|t| t.kind == Tok::Eq && t.text(self.text) == "==");
         let attempts = match self.seen.iter_mut().find(|s| s.0 == place) {
             Some(s) => {
                 s.1 += 1;

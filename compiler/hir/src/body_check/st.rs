@@ -6,12 +6,14 @@ use crate::defs::*;
 use crate::expr::*;
 use crate::place::Found;
 use crate::rules;
-use crate::types::{Type, TypeId, Types};
+use crate::types::{Type, Types};
 use plcc_diag::{Diagnostic, Span, codes};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::ops::Op;
 use plcc_syntax::ast;
 use rustc_hash::{FxHashMap, FxHashSet};
+
+mod case;
 
 /// Checks a body in the scope of its POU.
 pub(crate) fn check<'a>(cx: &mut Cx<'a>, scope: PouId, stmts: &'a [ast::Stmt]) -> Body {
@@ -294,122 +296,6 @@ impl<'a> St<'_, 'a> {
     fn no_effect(&mut self, span: Span, help: String) -> Option<StmtKind> {
         self.c.report(Diagnostic::new(codes::NO_EFFECT, span, "this statement has no effect").help(help));
         None
-    }
-
-    fn case(
-        &mut self,
-        selector: &'a ast::Expr,
-        arms: &'a [ast::CaseArm],
-        otherwise: Option<&'a [ast::Stmt]>,
-    ) -> Option<StmtKind> {
-        let value = self.c.any_value(selector);
-        let elem = self.c.elem_of(value.ty).filter(|e| e.is_integer() || e.is_bits());
-        if elem.is_none() && value.ty != Types::ERROR {
-            let ty = self.c.cx.type_name(value.ty);
-            self.c.report(
-                Diagnostic::new(codes::WRONG_OPERAND, selector.span, format!("CASE cannot choose by a {ty}"))
-                    .help("the selector is an integer, a bit string or an enumeration"),
-            );
-        }
-        let mut seen: Vec<(i128, i128, Span)> = Vec::new();
-        let mut checked = Vec::new();
-        for arm in arms {
-            let mut labels = Vec::new();
-            for label in &arm.labels {
-                let (range, span) = match label {
-                    ast::CaseLabel::One(e) => (self.label(e, value.ty, elem).map(|v| (v, v)), e.span),
-                    ast::CaseLabel::Range(a, b) => {
-                        let low = self.label(a, value.ty, elem);
-                        let high = self.label(b, value.ty, elem);
-                        (low.zip(high), a.span.to(b.span))
-                    }
-                };
-                let Some((low, high)) = range else { continue };
-                if low > high {
-                    self.c.report(
-                        Diagnostic::new(codes::CASE_LABEL, span, format!("the range {low}..{high} is empty"))
-                            .help("the lower value comes first"),
-                    );
-                    continue;
-                }
-                if let Some((_, _, first)) = seen.iter().find(|(l, h, _)| low <= *h && high >= *l) {
-                    self.c.report(
-                        Diagnostic::new(codes::CASE_LABEL, span, "this value is covered by an earlier label")
-                            .also(*first, "here")
-                            .help("each value may stand once in a CASE"),
-                    );
-                    continue;
-                }
-                seen.push((low, high, span));
-                labels.push((low, high));
-            }
-            checked.push(CaseArm { labels, body: self.list(&arm.body) });
-        }
-        let enumeration = match self.c.cx.defs.types.get(value.ty) {
-            Type::Enum(id) => Some(*id),
-            _ => None,
-        };
-        if let (Some(id), None) = (enumeration, otherwise) {
-            let def = &self.c.cx.defs.enums[id];
-            let missing: Vec<&str> = def
-                .values
-                .iter()
-                .filter(|(_, v, _)| !seen.iter().any(|(l, h, _)| (l..=h).contains(&v)))
-                .map(|(n, _, _)| n.as_str())
-                .collect();
-            if !missing.is_empty() && !self.c.cx.half_read.contains(&selector.span.file) {
-                let message = format!("CASE does not handle {} of `{}`", missing.join(", "), def.name);
-                let d = Diagnostic::new(codes::CASE_INCOMPLETE, selector.span, message)
-                    .also(def.span, "the enumeration is declared here")
-                    .help("add the missing values, or ELSE");
-                self.c.report(d);
-            }
-        }
-        let otherwise = otherwise.map(|b| self.list(b)).unwrap_or_default();
-        (value.ty != Types::ERROR && elem.is_some()).then_some(StmtKind::Case {
-            selector: value,
-            arms: checked,
-            otherwise,
-        })
-    }
-
-    /// A label as a number of the selector's type.
-    fn label(&mut self, e: &'a ast::Expr, ty: TypeId, elem: Option<Elem>) -> Option<i128> {
-        let operand = self.c.operand(e, Some(ty));
-        let elem = elem?;
-        if let (Operand::Int(v), false) = (&operand, matches!(self.c.cx.defs.types.get(ty), Type::Enum(_))) {
-            if !rules::holds(elem, *v) {
-                let (low, high) = elem.range().unwrap_or((0, 0));
-                self.c.report(
-                    Diagnostic::new(codes::CASE_LABEL, e.span, format!("the selector can never be {v}"))
-                        .help(format!("it is {}, from {low} to {high}", elem.name())),
-                );
-                return None;
-            }
-            return Some(*v);
-        }
-        let expr = match operand {
-            // A bit string is compared by its value, as the selector is.
-            Operand::Value { expr, ty: from }
-                if self.c.elem_of(from).is_some_and(|e| e.is_integer() || e.is_bits())
-                    && !matches!(self.c.cx.defs.types.get(ty), Type::Enum(_))
-                    && !matches!(self.c.cx.defs.types.get(from), Type::Enum(_)) =>
-            {
-                expr
-            }
-            operand => self.c.coerce(operand, e.span, ty),
-        };
-        if expr.ty == Types::ERROR {
-            return None;
-        }
-        let elem = self.c.elem_of(expr.ty).unwrap_or(elem);
-        match self.c.cx.eval(&expr, crate::consts::Reads::Constants) {
-            Ok(raw) => Some(elem.to_i128(raw)),
-            Err(why) => {
-                self.c.not_constant(why, crate::consts::Reads::Constants);
-                None
-            }
-        }
     }
 
     #[allow(clippy::too_many_arguments)]

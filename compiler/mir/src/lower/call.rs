@@ -9,7 +9,7 @@ use crate::build::Builder;
 use crate::ir::{Base, BlockId, Place, ValueId};
 use crate::layout::Slot;
 use plcc_diag::bug;
-use plcc_hir::body::{self, Call, Callee, Expr};
+use plcc_hir::body::{self, Call, Callee, Eno, Expr};
 use plcc_hir::shape::repr;
 use plcc_hir::{Init, PouId, PouKind, Section, Type, TypeId, VarId, elem_of};
 use plcc_stdlib::prim::{PrimOp, Repr};
@@ -91,8 +91,9 @@ impl FuncLower<'_, '_> {
         let args: Vec<ValueId> = std::iter::once(one).chain(value).collect();
         self.b.jump(join, &args);
         self.b.switch_to(join);
-        if let Some(place) = &call.eno {
-            let access = self.place(place);
+        if let Some(Eno { target, negated }) = &call.eno {
+            let eno = if *negated { self.b.not(eno) } else { eno };
+            let access = self.place(target);
             self.store(&access, eno);
         }
         joined

@@ -3,14 +3,14 @@
 //! The entry block is filled last: only then it is known which local variables the body uses, and the others need no
 //! initial value. Outputs and the result always get theirs, because callers read them.
 
-use super::place::{Access, Purpose};
+use super::place::Access;
 use super::{Context, init};
 use crate::build::Builder;
 use crate::ir::{Base, BlockId, Func, Place, Source};
 use crate::layout::{MAX_REGION_BYTES, Slot, TooLarge};
 use index_vec::IndexVec;
 use plcc_diag::{Span, bug};
-use plcc_hir::body::TempId;
+use plcc_hir::body::{Root, TempId};
 use plcc_hir::shape::repr;
 use plcc_hir::{Body, Defs, Init, PouId, PouKind, Section, Type, TypeId, VarId};
 use plcc_stdlib::prim::Repr;
@@ -252,13 +252,7 @@ impl<'c, 'a> FuncLower<'c, 'a> {
 
     /// Variables that start with their initial value at each call (semantics.md \[S4\]).
     fn start_afresh(&mut self, variables: PouId, function: bool) {
-        for &id in &self.defs.pous[variables].vars {
-            let var = &self.defs.vars[id];
-            if let (Some(place), true) = (&var.refers_to, self.used.contains(&id)) {
-                // What it refers to is used by that.
-                self.resolve(place, Purpose::Address);
-            }
-        }
+        self.use_what_is_referred_to(variables);
         for &id in &self.defs.pous[variables].vars {
             let var = &self.defs.vars[id];
             let fresh = match var.section {
@@ -269,13 +263,29 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             };
             if fresh && var.address.is_none() {
                 let place = self.own_place(id);
-                match &var.refers_to {
-                    Some(target) => {
-                        let address = self.address(target, Purpose::Address);
-                        self.b.store(place, address);
-                    }
-                    None => self.store_init(place, var.ty, &var.init),
-                }
+                self.store_init(place, var.ty, &var.init);
+            }
+        }
+    }
+
+    /// What a used variable initially refers to is used, too.
+    fn use_what_is_referred_to(&mut self, variables: PouId) {
+        let defs = self.defs;
+        let mut referring = Vec::new();
+        for &id in &defs.pous[variables].vars {
+            let mut found = Vec::new();
+            defs.vars[id].init.references(&mut found);
+            if !found.is_empty() {
+                referring.push((id, found));
+            }
+        }
+        // One may refer to another that refers to a third.
+        while let Some(n) = referring.iter().position(|(id, _)| self.used.contains(id)) {
+            for reference in referring.swap_remove(n).1 {
+                self.used.extend(defs.references[reference].as_ref().and_then(|place| match place.root {
+                    Root::Var(var) => Some(var),
+                    _ => None,
+                }));
             }
         }
     }
@@ -292,13 +302,25 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             self.b.zero(place, bytes);
             return;
         }
-        let data = init::bytes(self.defs, self.cx.layout, ty, init);
+        let data = init::bytes(self.defs, self.cx.layout, ty, init, Self::home(&place));
         let constant = self.constant_place(data);
         self.b.copy(place, constant, bytes);
     }
 
+    /// Where a variable of this function lies, for the references in it.
+    fn home(place: &Place) -> init::Home {
+        // What is in a frame holds no instance that refers to its own variables.
+        let at = if matches!(place.base, Base::Region) { place.offset as u32 } else { 0 };
+        init::Home { at, instance: at }
+    }
+
     /// The initial value of a scalar.
     pub fn init_value(&mut self, repr: Repr, ty: TypeId, init: &Init) -> crate::ir::ValueId {
+        if let Init::Reference(id) = init {
+            let home = init::Home { at: 0, instance: 0 };
+            let address = init::address(self.defs, self.cx.layout, *id, home);
+            return self.b.number(repr, u64::from(address));
+        }
         match init::scalar(self.defs, ty, init) {
             Some(raw) => self.b.number(repr, raw),
             None => bug!("an initial value {init:?} for a scalar"),

@@ -1,14 +1,15 @@
 //! Initial values to bytes: the image of a cold start, and the initial data of function variables.
 //!
-//! In: `hir::Init`, shapes. Out: bytes at offsets. An initial value is complete; what it leaves out has the default of its
-//! type (semantics.md \[T9\]).
+//! In: `hir::Init`, layout. Out: bytes at offsets. An initial value is complete; what it leaves out has the default of its
+//! type (semantics.md \[T9\]). References are offsets in the region; what they refer to has its place there, also variables of
+//! functions, as their address is taken.
 
 use crate::ir::Segment;
 use crate::layout::{Layout, Slot};
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
 use plcc_hir::elem_of;
-use plcc_hir::{Defs, Init, Section, Type, TypeId, Var, VarId};
+use plcc_hir::{Defs, Init, ReferenceId, Section, Type, TypeId, Var, VarId};
 use std::collections::BTreeMap;
 
 /// The register value with which a scalar starts; `None` for what is no scalar.
@@ -31,16 +32,44 @@ pub fn scalar(defs: &Defs, ty: TypeId, init: &Init) -> Option<u64> {
     Some(raw & mask)
 }
 
+/// Where a value lies and whose it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Home {
+    /// The offset of the value in the region.
+    pub at: u32,
+    /// That of the instance to whose variables its references refer, where these are no global ones.
+    pub instance: u32,
+}
+
+impl Home {
+    fn plus(self, offset: u32) -> Self {
+        Self { at: self.at + offset, ..self }
+    }
+}
+
 /// Bytes of a value in memory.
-pub fn bytes(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init) -> Vec<u8> {
+pub fn bytes(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, home: Home) -> Vec<u8> {
     let mut out = vec![0; layout.size(defs, ty) as usize];
-    write(defs, layout, ty, init, &mut out);
+    write(defs, layout, ty, init, home, &mut out);
     out
 }
 
+/// The offset of what a reference refers to, 0 for NULL.
+pub fn address(defs: &Defs, layout: &Layout, id: ReferenceId, home: Home) -> u32 {
+    let Some(place) = &defs.references[id] else { return 0 };
+    match layout.address_of(defs, place, home.instance) {
+        (offset, None) => offset,
+        (_, Some(_)) => bug!("a reference to a bit"),
+    }
+}
+
 /// Writes a value into bytes that are 0.
-fn write(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, out: &mut [u8]) {
+fn write(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, home: Home, out: &mut [u8]) {
     if layout.shapes.init_is_zero(defs, ty, init) {
+        return;
+    }
+    if let Init::Reference(id) = init {
+        out.copy_from_slice(&address(defs, layout, *id, home).to_le_bytes());
         return;
     }
     if let Some(raw) = scalar(defs, ty, init) {
@@ -60,18 +89,18 @@ fn write(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, out: &mut [u8]) 
                 to.copy_from_slice(&unit.to_le_bytes());
             }
         }
-        (Type::Array { elem, .. }, _) => write_array(defs, layout, *elem, init, out),
+        (Type::Array { elem, .. }, _) => write_array(defs, layout, *elem, init, home, out),
         (Type::Struct(id), _) => {
             let def = &defs.structs[*id];
-            let explicit = |n: usize| fields(init).iter().rfind(|(k, _)| *k as usize == n).map(|(_, i)| i);
             let mut field = |n: usize, init: &Init| {
                 let ty = def.fields[n].ty;
-                let at = layout.field(*id, n as u32) as usize;
+                let offset = layout.field(*id, n as u32);
+                let at = offset as usize;
                 let to = &mut out[at..at + layout.size(defs, ty) as usize];
                 if def.union {
                     to.fill(0);
                 }
-                write(defs, layout, ty, init, to);
+                write(defs, layout, ty, init, home.plus(offset), to);
             };
             if def.union {
                 // The fields share their bytes: one value counts, that which is written last, else the first one's own.
@@ -85,29 +114,44 @@ fn write(defs: &Defs, layout: &Layout, ty: TypeId, init: &Init, out: &mut [u8]) 
                     }
                 }
             } else {
-                for n in 0..def.fields.len() {
-                    field(n, explicit(n).unwrap_or(&def.fields[n].init));
+                let own = explicit(init, def.fields.len());
+                for (n, own) in own.into_iter().enumerate() {
+                    field(n, own.unwrap_or(&def.fields[n].init));
                 }
             }
         }
         (Type::Instance(pou), _) => {
-            for (n, &id) in defs.pous[*pou].vars.iter().enumerate() {
+            let vars = &defs.pous[*pou].vars;
+            for (&id, explicit) in vars.iter().zip(explicit(init, vars.len())) {
                 let var = &defs.vars[id];
                 let (Some(Slot::Instance(at)), false) = (layout.slot(id), var.section == Section::InOut) else {
                     continue;
                 };
-                let explicit = fields(init).iter().rfind(|(k, _)| *k as usize == n).map(|(_, i)| i);
+                let home = match explicit {
+                    // What stands at the declaration of the instance is said about the variables around it.
+                    Some(_) => home.plus(at),
+                    None => Home { at: home.at + at, instance: home.at },
+                };
                 let at = at as usize;
                 if let Some(flag) = flag(defs, layout, var) {
                     out[at + flag as usize] = 1;
                     continue;
                 }
                 let to = &mut out[at..at + layout.size(defs, var.ty) as usize];
-                write(defs, layout, var.ty, explicit.unwrap_or(&var.init), to);
+                write(defs, layout, var.ty, explicit.unwrap_or(&var.init), home, to);
             }
         }
         _ => bug!("an initial value {init:?} for {:?}", defs.types[ty]),
     }
+}
+
+/// The values that are given for the components, by their index; `None` where there is none.
+fn explicit(init: &Init, count: usize) -> Vec<Option<&Init>> {
+    let mut given = vec![None; count];
+    for (n, value) in fields(init) {
+        given[*n as usize] = Some(value);
+    }
+    given
 }
 
 /// Of an initial step: how far behind its first byte its flag lies. Nothing else of a step has an initial value, and the flag
@@ -128,8 +172,11 @@ fn fields(init: &Init) -> &[(u32, Init)] {
     }
 }
 
-fn write_array(defs: &Defs, layout: &Layout, elem: TypeId, init: &Init, out: &mut [u8]) {
+fn write_array(defs: &Defs, layout: &Layout, elem: TypeId, init: &Init, home: Home, out: &mut [u8]) {
     let size = layout.size(defs, elem) as usize;
+    // References to variables of an instance are others in each element.
+    let alike = !layout.shapes.of(defs, elem).references;
+    let mut offset = 0;
     if size == 0 {
         return;
     }
@@ -140,11 +187,19 @@ fn write_array(defs: &Defs, layout: &Layout, elem: TypeId, init: &Init, out: &mu
         let bytes = (*count as usize).saturating_mul(size).min(rest.len());
         let (run, behind) = rest.split_at_mut(bytes);
         rest = behind;
+        let start = offset;
+        offset += run.len() as u32;
         if run.is_empty() || layout.shapes.init_is_zero(defs, elem, item) {
             continue;
         }
+        if !alike {
+            for (n, to) in run.chunks_exact_mut(size).enumerate() {
+                write(defs, layout, elem, item, home.plus(start + (n * size) as u32), to);
+            }
+            continue;
+        }
         let (first, others) = run.split_at_mut(size);
-        write(defs, layout, elem, item, first);
+        write(defs, layout, elem, item, home, first);
         others.chunks_exact_mut(size).for_each(|to| to.copy_from_slice(first));
     }
 }
@@ -241,7 +296,9 @@ impl Writer<'_> {
             let Some((offset, None)) = self.layout.offset(id, instance) else { return };
             if n + 1 == path.len() {
                 let ty = self.defs.vars[id].ty;
-                self.image.write(offset, &bytes(self.defs, self.layout, ty, init));
+                // VAR_CONFIG refers to global variables only.
+                let home = Home { at: offset, instance };
+                self.image.write(offset, &bytes(self.defs, self.layout, ty, init, home));
             }
             instance = offset;
         }
@@ -258,7 +315,10 @@ impl Writer<'_> {
             Some((offset, Some(bit))) => self.image.set_bit(offset, bit),
             Some((offset, None)) => match flag(self.defs, self.layout, var) {
                 Some(flag) => self.image.write(offset + flag, &[1]),
-                None => self.image.write(offset, &bytes(self.defs, self.layout, var.ty, &var.init)),
+                None => {
+                    let home = Home { at: offset, instance };
+                    self.image.write(offset, &bytes(self.defs, self.layout, var.ty, &var.init, home));
+                }
             },
             None => {}
         }

@@ -16,7 +16,6 @@ pub mod init;
 mod path;
 mod place;
 pub mod reach;
-mod references;
 mod std_call;
 mod stmt;
 mod string;
@@ -102,7 +101,6 @@ pub fn lower(
     program.sources = sources;
     let mut image = Image::default();
     init::variables(defs, &layout, resource, &mut image);
-    references::write(defs, &layout, resource, &mut image);
     layout.close(constants.bytes().len() as u64, task::frame_bytes(&program))?;
     image.write(layout.constants.start, constants.bytes());
     program.initial = image.segments();

@@ -6,7 +6,7 @@
 use super::func::FuncLower;
 use super::place::Access;
 use crate::ir::{Place, ValueId};
-use plcc_hir::body::{Expr, StdCall};
+use plcc_hir::body::{Eno, Expr, StdCall};
 use plcc_hir::shape::repr;
 use plcc_hir::{Init, TypeId};
 use plcc_stdlib::prim::Repr;
@@ -69,8 +69,9 @@ impl FuncLower<'_, '_> {
         self.b.jump(join, &args);
 
         self.b.switch_to(join);
-        if let Some(place) = &call.eno {
-            let access = self.place(place);
+        if let Some(Eno { target, negated }) = &call.eno {
+            let eno = if *negated { self.b.not(eno) } else { eno };
+            let access = self.place(target);
             self.store(&access, eno);
         }
         joined

@@ -6,7 +6,7 @@ use crate::layout::Layout;
 use crate::verify::verify;
 use plcc_diag::{FileId, Span};
 use plcc_hir::app::{Application, Program, Resource, Task};
-use plcc_hir::body::{Body, Call, Callee, CaseArm, Expr, ExprKind, OutputArg, Place, Root, Step, Stmt, StmtKind};
+use plcc_hir::body::{Body, Call, Callee, CaseArm, Eno, Expr, ExprKind, OutputArg, Place, Root, Step, Stmt, StmtKind};
 use plcc_hir::*;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::fault::Fault;
@@ -62,7 +62,6 @@ impl Test {
             address: None,
             open_address: None,
             init: Init::Default,
-            refers_to: None,
             address_taken: false,
             span: SPAN,
         });
@@ -424,7 +423,7 @@ fn eno_catches_a_fault_and_en_skips() {
         let ok = test.local("ok", Types::elem(Elem::Bool));
         let mut call = call_of(&test, f, input, number(Elem::Int, 5));
         call.en = en.map(|en| number(Elem::Bool, en));
-        call.eno = Some(test.place(ok));
+        call.eno = Some(Eno { target: test.place(ok), negated: false });
         call.outputs.push(OutputArg { output, negated: false, convert: None, target: test.place(y) });
         let stmts = vec![
             test.assign(x, number(Elem::Int, 9)),

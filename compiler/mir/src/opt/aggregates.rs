@@ -22,6 +22,9 @@ const BYTES: u32 = 64;
 /// So many parts at most.
 const PARTS: usize = 16;
 
+/// More single bytes than these are copied together.
+const BYTES_APART: usize = 2;
+
 /// How often parts are handed on from copy to copy.
 const ROUNDS: usize = 3;
 
@@ -216,6 +219,10 @@ impl Seen {
             at = end;
         }
         gap(&mut plan, at, i64::from(bytes));
+        // Single bytes would fill the registers and save little: each is soon read again.
+        if plan.len() > BYTES_APART && plan.iter().all(|(_, repr)| *repr == Repr::I8) {
+            return None;
+        }
         (plan.len() <= PARTS).then_some(plan)
     }
 }

@@ -178,6 +178,10 @@ impl Blocks<'_, '_> {
             self.at += 1;
             return;
         }
+        // A statement on the next line: the condition behind UNTIL has ended, and END_REPEAT is missing.
+        if Construct::statement(t.kind).is_some() && t.first && self.behind_until() {
+            return self.close_above(self.stack.len() - 1, t);
+        }
         match t.kind {
             Tok::Id => return self.name_in_statement(t),
             Tok::Else => self.branch(t, |f| matches!(f.block, Construct::If | Construct::Case)),
@@ -233,6 +237,9 @@ impl Blocks<'_, '_> {
                     self.at += 1;
                     return;
                 }
+                if self.head_of_c() {
+                    return;
+                }
                 if let Some(block) = Construct::statement(kind) {
                     // A condition of a transition has no statements.
                     return self.open(block, kind);
@@ -249,7 +256,39 @@ impl Blocks<'_, '_> {
         open && (1..).map(|n| self.peek(n).kind).find(|k| ends(*k)) == Some(Tok::Colon)
     }
 
+    /// Whether the condition behind an UNTIL is being read.
+    fn behind_until(&self) -> bool {
+        self.stack.last().is_some_and(|f| f.block == Construct::Repeat && f.has_else) && self.last() != Tok::Until
+    }
+
+    /// BEGIN and END, which other languages put around statements: reported once, and left out.
+    fn begin_or_end(&mut self, t: Token) -> bool {
+        let next = self.peek(1);
+        let alone = next.first || matches!(next.kind, Tok::Semi | Tok::StartItem);
+        if self.is(0, "BEGIN") && alone {
+            let message = "no BEGIN stands before statements";
+            self.report.push(
+                self.report
+                    .at(codes::UNEXPECTED, t.start, t.end, message)
+                    .help("remove BEGIN and its END; END_IF, END_FOR and the like end a construct"),
+            );
+            self.begun += 1;
+        } else if self.is(0, "END") && alone && self.begun > 0 {
+            self.begun -= 1;
+        } else {
+            return false;
+        }
+        self.at += 1;
+        if self.peek(0).kind == Tok::Semi {
+            self.at += 1;
+        }
+        true
+    }
+
     fn name_in_statement(&mut self, t: Token) {
+        if self.at_statement() && self.begin_or_end(t) {
+            return;
+        }
         if t.first || self.at_statement() {
             if self.action_here() {
                 return self.next_action();
@@ -336,9 +375,8 @@ impl Blocks<'_, '_> {
         }
         let upper = text.to_ascii_uppercase();
         let words = [(If, Then), (For, To), (While, Do), (Case, Of), (Repeat, Until), (Elsif, Then)];
-        let Some((word, partner)) = words.into_iter().find(|(word, _)| is_close(&upper, word.describe())) else {
-            return false;
-        };
+        let close = words.into_iter().find(|(word, _)| is_close(&upper, word.describe()));
+        let Some((word, partner)) = close.or((upper == "SWITCH").then_some((Case, Of))) else { return false };
         // `name(...)` is a call and `name` on a line of its own a statement without `;`, unless the partner word follows.
         let until = |t: &&Token| word == Repeat || t.kind != Semi;
         let mut rest = self.tokens[self.at + 1..].iter().take_while(until);

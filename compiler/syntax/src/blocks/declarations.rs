@@ -85,6 +85,15 @@ impl Blocks<'_, '_> {
                 );
                 self.insert(Tok::Colon);
                 self.result_type();
+            } else if let Some(name) = self.resultless() {
+                let at = self.previous_end();
+                self.report.push(
+                    self.report
+                        .at(codes::MISSING_OPERAND, at, at, format!("the type of the result of `{name}` is missing"))
+                        .help(format!("its body assigns one: write for example `FUNCTION {name} : INT`")),
+                );
+                self.insert(Tok::Colon);
+                self.insert(Tok::Bad);
             }
         }
         self.junk_behind_name();
@@ -92,6 +101,22 @@ impl Blocks<'_, '_> {
             self.at += 1;
         }
         self.out.extend(parameters);
+    }
+
+    /// The name of the FUNCTION whose head ends here, if its body assigns to it.
+    fn resultless(&mut self) -> Option<String> {
+        let name = self.out.last().filter(|t| t.kind == Tok::Id)?.text(self.text);
+        if self.looks == 0 {
+            return None;
+        }
+        self.looks -= 1;
+        let body =
+            self.tokens[self.at..].iter().take_while(|t| !Construct::closed_by(t.kind).is_some_and(Construct::is_pou));
+        let mut pairs = body.clone().zip(body.skip(1));
+        let assigned = |(t, next): (&Token, &Token)| {
+            t.kind == Tok::Id && next.kind == Tok::Assign && t.text(self.text).eq_ignore_ascii_case(name)
+        };
+        pairs.any(assigned).then(|| name.to_string())
     }
 
     /// `FUNCTION Add(a : INT, b : INT) : INT`: reported; the tokens of the VAR_INPUT that it means.
@@ -249,6 +274,16 @@ impl Blocks<'_, '_> {
             return false;
         }
         let upper = text.to_ascii_uppercase();
+        if upper == "CONST" {
+            self.report.push(
+                self.report
+                    .at(codes::MISSPELLED, t.start, t.end, format!("`{text}` is no section of variables"))
+                    .help("write `VAR CONSTANT` before the constants and END_VAR behind them"),
+            );
+            self.open(Construct::Var, Tok::Var);
+            self.emit(Token { kind: Tok::Qualifier, ..t });
+            return true;
+        }
         let Some(meant) = section_meant(&upper) else { return false };
         self.report.push(
             self.report
@@ -322,6 +357,15 @@ impl Blocks<'_, '_> {
         {
             self.take(Tok::Qualifier);
         }
+        if self.is(0, "CONST") && self.peek(1).kind == Tok::Id {
+            let t = self.peek(0);
+            self.report.push(
+                self.report
+                    .at(codes::MISSPELLED, t.start, t.end, "constants are not declared with CONST")
+                    .help("write `VAR CONSTANT`"),
+            );
+            self.take(Tok::Qualifier);
+        }
     }
 
     /// Whether a declaration begins with the next token.
@@ -349,6 +393,8 @@ impl Blocks<'_, '_> {
             }
             Tok::Id if start && in_pou && self.body_begins() => return self.close_above(self.stack.len() - 1, t),
             Tok::Id if self.reference_word() => return,
+            Tok::Id if self.headless_structure(t) => return,
+            Tok::Semi if self.values_apart(t) => return,
             Tok::Id => {
                 let kind = self.soft_word();
                 return self.take(kind);
@@ -379,6 +425,47 @@ impl Blocks<'_, '_> {
         self.insert(Tok::Colon);
         self.open(Construct::Struct, Tok::Struct);
         self.at += 1;
+    }
+
+    /// `Point : x : INT; y : INT; END_STRUCT;`: reported, and STRUCT inserted.
+    fn headless_structure(&mut self, t: Token) -> bool {
+        let components = self.last() == Tok::Colon && t.first && self.peek(1).kind == Tok::Colon;
+        if !components || self.top() != Some(Construct::Type) || self.looks == 0 {
+            return false;
+        }
+        self.looks -= 1;
+        let stop = |t: &&Token| Construct::closed_by(t.kind).is_some() || matches!(t.kind, Tok::Struct | Tok::Union);
+        if self.tokens[self.at..].iter().find(stop).is_none_or(|t| t.kind != Tok::EndStruct) {
+            return false;
+        }
+        let at = self.previous_end();
+        self.report.push(
+            self.report
+                .at(codes::MISSING_WORD, at, at, "STRUCT is missing before these components")
+                .help("write `name : STRUCT`"),
+        );
+        let inserted = Token::inserted(Tok::Struct, at);
+        self.stack.push(super::Frame::new(Construct::Struct, inserted, None, None));
+        self.emit(inserted);
+        true
+    }
+
+    /// A `;` between the values of an enumeration: reported once, and read as `,`.
+    fn values_apart(&mut self, t: Token) -> bool {
+        let more = self.peek(1).kind == Tok::Id && matches!(self.peek(2).kind, Tok::Semi | Tok::Comma | Tok::RParen);
+        if self.parens == 0 || !more {
+            return false;
+        }
+        let mut list = self.out.iter().rev().take_while(|t| t.kind != Tok::LParen);
+        if !list.any(|t| t.kind == Tok::Comma && t.text(self.text) == ";") {
+            self.report.push(
+                self.report
+                    .at(codes::UNEXPECTED, t.start, t.end, "`;` does not separate the values of an enumeration")
+                    .help("write `,`"),
+            );
+        }
+        self.take(Tok::Comma);
+        true
     }
 
     /// Whether the next token, a reserved word, stands where only a name can.

@@ -67,6 +67,8 @@ impl Blocks<'_, '_> {
         matches!(t.kind, Tok::Id | Tok::Op | Tok::Not)
             && is_operator(t.text(self.text))
             && !matches!(next.kind, Tok::Assign | Tok::Arrow | Tok::Dot | Tok::LBracket | Tok::Semi)
+            // `NOT Q => x` in a list of parameters.
+            && !(t.kind == Tok::Not && self.peek(i + 2).kind == Tok::Arrow)
     }
 
     /// Where the parenthesis that opens `i` ahead closes.

@@ -59,7 +59,8 @@ impl Context<'_> {
     /// The word in bytes `l..r`.
     pub fn qualifier(&self, l: u32, r: u32) -> (Qualifier, Span) {
         let qualifier = match self.slice(l, r).to_ascii_uppercase().as_str() {
-            "CONSTANT" => Qualifier::Constant,
+            // The short form was reported.
+            "CONSTANT" | "CONST" => Qualifier::Constant,
             "RETAIN" => Qualifier::Retain,
             "NON_RETAIN" => Qualifier::NonRetain,
             "PERSISTENT" => Qualifier::Persistent,

@@ -74,7 +74,12 @@ impl Lexer<'_, '_, '_> {
                         .at(codes::BAD_LITERAL, start, end, format!("a value is missing behind `{prefix}#`"))
                         .help("a typed literal has no blank around `#`: `INT#5`"),
                 );
-                self.push(Tok::Bad, hash + 1 - self.at);
+                // What stands behind the blank is the value that was meant.
+                let blanks = self.text[hash + 1..].bytes().take_while(|b| *b == b' ').count();
+                let value = hash + 1 + blanks;
+                let digit = self.bytes.get(value).is_some_and(u8::is_ascii_digit);
+                let end = if digit { self.word_end(value) } else { hash + 1 };
+                self.push(Tok::Bad, end - self.at);
             }
         }
     }
@@ -104,6 +109,17 @@ impl Lexer<'_, '_, '_> {
             }
             end += 1;
         }
+        if let Some(stop) = self.decimal_comma(end) {
+            let written = &self.text[self.at..stop];
+            let message = self.report.at(
+                codes::BAD_LITERAL,
+                self.at as u32,
+                stop as u32,
+                format!("`{written}` has a comma in its value"),
+            );
+            self.report.push(message.help(format!("write `{}`", written.replacen(',', ".", 1))));
+            return self.push(Tok::Bad, stop - self.at);
+        }
         let Some((start, stop)) = wrong else { return self.push(Tok::Lit, end - self.at) };
         let unit = &self.text[start..stop];
         let mut message = self.report.at(
@@ -121,6 +137,17 @@ impl Lexer<'_, '_, '_> {
         };
         self.report.push(message);
         self.push(Tok::Bad, end - self.at);
+    }
+
+    /// Where a duration ends whose fraction stands behind a comma at `comma`: `T#2,5s`.
+    fn decimal_comma(&self, comma: usize) -> Option<usize> {
+        if self.bytes.get(comma) != Some(&b',') || !self.bytes[comma - 1].is_ascii_digit() {
+            return None;
+        }
+        let stop = self.word_end(comma + 1);
+        let unit = self.text[comma + 1..stop].trim_start_matches(|c: char| c.is_ascii_digit());
+        let digits = stop - comma - 1 - unit.len();
+        (digits > 0 && UNITS.iter().any(|u| u.eq_ignore_ascii_case(unit))).then_some(stop)
     }
 
     fn date_end(&self, from: usize) -> usize {
@@ -160,6 +187,13 @@ impl Lexer<'_, '_, '_> {
             message.help(format!("a duration is written `T#{text}`"))
         } else if text.starts_with('0') && tail.starts_with(['x', 'X']) {
             message.help(format!("a hexadecimal number is written `16#{}`", &tail[1..]))
+        } else if text.starts_with('0') && tail.starts_with(['b', 'B']) {
+            message.help(format!("a binary number is written `2#{}`", &tail[1..]))
+        } else if matches!(tail, "f" | "F" | "L" | "u" | "U" | "l" | "d") {
+            message.help(format!(
+                "the type of a literal stands before it: `{}`, `DINT#5`, `LREAL#1.5`",
+                &text[..end - self.at]
+            ))
         } else {
             message.help("names start with a letter or an underline; numbers are `12`, `16#FF`, `1.5`, `1e6`")
         };

@@ -7,6 +7,9 @@ use crate::token::{Tok, Token};
 use plcc_diag::{Code, Diagnostic, codes};
 use std::ops::Range;
 
+/// A call has no more tokens in its parentheses: each is looked at where one of its signs is wrong.
+const MOST_ARGUMENT_TOKENS: usize = 500;
+
 impl Recovery<'_, '_> {
     /// Mends the place if the cause is plain; the message says what it was.
     pub(super) fn insert_missing(&mut self, refused: &Refused, segment: &Range<usize>) -> Option<Diagnostic> {
@@ -267,6 +270,11 @@ impl Recovery<'_, '_> {
             self.tokens[at].kind = kind;
             return Some(self.no_such_word(at, word));
         }
+        if self.kind(at) == Tok::Colon && self.begins_line(at + 1) {
+            self.tokens[at].kind = kind;
+            let message = self.report.at(codes::MISSING_WORD, start, end, format!("{of} needs {word} here, not `:`"));
+            return Some(message.help(help));
+        }
         if self.kind(at) == Tok::Semi && self.kind(at + 1) == kind {
             self.tokens.remove(at);
             let message = self.report.at(codes::UNEXPECTED, start, end, format!("`;` does not belong before {word}"));
@@ -363,8 +371,16 @@ impl Recovery<'_, '_> {
         let kind = self.kind(at);
         if refused.wants_type() && (is_boundary(kind) || matches!(kind, Tok::Assign | Tok::Comma | Tok::RParen)) {
             let message = self.missing(codes::MISSING_OPERAND, at, "a type is missing here");
+            let gap = self.text.get(self.end_before(at) as usize..self.bytes(at).0 as usize);
+            let braces = gap.filter(|gap| gap.contains('{'));
+            // The values that were meant are not known.
+            let words = braces.unwrap_or("").split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+            words.filter(|word| !word.is_empty()).for_each(|word| self.report.lose(word));
             self.insert(at, Tok::Bad);
-            return Some(message.help("write for example `: INT`"));
+            return Some(message.help(match braces {
+                Some(_) => "braces hold pragmas; the values of an enumeration stand in parentheses: `(Red, Green)`",
+                None => "write for example `: INT`",
+            }));
         }
         if refused.wants("OF") && matches!(kind, Tok::Id | Tok::Array | Tok::RefWord | Tok::LParen | Tok::Struct) {
             let message = self.missing(codes::MISSING_WORD, at, "OF is missing before the type of the elements");
@@ -495,6 +511,11 @@ impl Recovery<'_, '_> {
             (_, true) => (Tok::RBracket, "]"),
             _ => return None,
         };
+        if kind == Tok::Semi && refused.wants(",") && self.semicolons_in_call(at) {
+            let (start, end) = self.bytes(at);
+            let message = self.report.at(codes::UNEXPECTED, start, end, "`;` does not separate arguments");
+            return Some(message.help("write `,`"));
+        }
         let closes_later = self.closes_later(at..segment.end);
         if refused.wants(",") && closes_later && is_operand_start(kind) {
             let message = self.missing(codes::MISSING_WORD, at, "`,` is missing here");
@@ -528,6 +549,35 @@ impl Recovery<'_, '_> {
         Some(message.help(format!("write `{sign}`")))
     }
 
+    /// Whether the call whose parenthesis is open at the `;` at `at` goes on behind it: then `,` is meant by this `;` and
+    /// those that follow.
+    fn semicolons_in_call(&mut self, at: usize) -> bool {
+        let call = |k| matches!(k, Tok::Id | Tok::Caret | Tok::RBracket);
+        if self.surroundings(at) != Surroundings::Statements
+            || self.opener(at).is_none_or(|open| open == 0 || !call(self.kind(open - 1)))
+        {
+            return false;
+        }
+        let mut depth = 0;
+        let mut signs = vec![at];
+        for (n, t) in self.tokens.iter().enumerate().skip(at + 1).take(MOST_ARGUMENT_TOKENS) {
+            match t.kind {
+                Tok::LParen => depth += 1,
+                Tok::RParen if depth == 0 => {
+                    for sign in signs {
+                        self.tokens[sign].kind = Tok::Comma;
+                    }
+                    return true;
+                }
+                Tok::RParen => depth -= 1,
+                Tok::Semi if depth == 0 => signs.push(n),
+                kind if is_boundary(kind) => return false,
+                _ => {}
+            }
+        }
+        false
+    }
+
     /// Whether more parentheses close than open in `range`.
     fn closes_later(&self, range: Range<usize>) -> bool {
         let mut depth = 0i32;
@@ -545,7 +595,7 @@ impl Recovery<'_, '_> {
     }
 
     /// The parenthesis or bracket that is open before `at`.
-    fn opener(&self, at: usize) -> Option<usize> {
+    pub(super) fn opener(&self, at: usize) -> Option<usize> {
         let mut depth = 0;
         for (i, t) in self.tokens[..at.min(self.tokens.len())].iter().enumerate().rev() {
             match t.kind {

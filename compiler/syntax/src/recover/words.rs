@@ -50,6 +50,10 @@ impl Recovery<'_, '_> {
         let (t, before) = (*self.tokens.get(at)?, *self.tokens.get(at.checked_sub(1)?)?);
         let text = before.text(self.text);
         match (before.kind, t.kind) {
+            (Tok::Int, Tok::Comma) if self.list_in_parens(at) => Some(
+                "the elements of an array stand in brackets: `[1, 2]`; components have names: `(x := 1, y := 2)`"
+                    .into(),
+            ),
             (Tok::Int, Tok::Comma) if before.end == t.start && self.bytes(at + 1).0 == t.end => {
                 let fraction = self.tokens.get(at + 1).filter(|t| t.kind == Tok::Int)?.text(self.text);
                 Some(format!("the sign of a fraction is the point: `{text}.{fraction}`"))
@@ -70,12 +74,65 @@ impl Recovery<'_, '_> {
             (Tok::Id, Tok::Semi) if self.kind(self.segment(at).start) == Tok::Program => {
                 Some("an instance has a name of its own: `PROGRAM P1 WITH Fast : Main;`".into())
             }
+            (Tok::DotDot, Tok::Dot) => Some("`..` has two points".into()),
+            (Tok::Int, Tok::Dot) => Some(format!("a point is followed by digits: `{text}.0`")),
+            (_, Tok::Dot) if self.kind(at + 1) == Tok::Int && self.bytes(at + 1).0 == t.end => {
+                let fraction = self.tokens[at + 1].text(self.text);
+                Some(format!("digits stand before the point, too: `0.{fraction}`"))
+            }
+            (_, Tok::Not) => Some("NOT stands before its operand: `NOT x`".into()),
+            (_, Tok::Id) if t.text(self.text).eq_ignore_ascii_case("DIV") => {
+                Some("the quotient of integers is `x / y`, without fraction; the remainder `x MOD y`".into())
+            }
+            (Tok::Id, Tok::Id | Tok::Int | Tok::Lit) if !t.first && self.behind_assign(at) => {
+                Some(format!("an operator is missing, or the parentheses of a call: `{text}(...)`"))
+            }
+            (Tok::Colon, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => Some(
+                "values of an enumeration stand in parentheses, `(Red, Green)`; arrays are `ARRAY [0..4] OF INT`"
+                    .into(),
+            ),
+            (Tok::RBracket, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => {
+                Some("all dimensions stand in one pair of brackets: `ARRAY [1..3, 0..1] OF INT`".into())
+            }
+            (Tok::Array, _) => Some("an array is written `ARRAY [0..4] OF INT`".into()),
+            (_, Tok::RBracket | Tok::To | Tok::DotDot) if self.surroundings(at) == Surroundings::Declarations => {
+                self.bounds_habit(at)
+            }
             (Tok::Address, Tok::Comma) => Some("the parts of an address are separated by `.`: `%QX0.1`".into()),
             (Tok::Id, Tok::LBracket) if self.surroundings(at) == Surroundings::Declarations => {
                 Some(format!("an array is declared `{text} : ARRAY [0..4] OF INT`"))
             }
             _ => None,
         }
+    }
+
+    /// What to write for bounds that end at `at` and are none: `ARRAY [5]`, `INT [0..9]`, `INT (0 TO 9)`.
+    fn bounds_habit(&self, at: usize) -> Option<String> {
+        let open = self.opener(at)?;
+        let before = self.tokens.get(open.checked_sub(1)?)?;
+        let word = before.text(self.text);
+        match self.kind(open) {
+            _ if before.kind == Tok::Array => Some("an array is written `ARRAY [0..4] OF INT`".into()),
+            Tok::LBracket if before.kind == Tok::Id && crate::blocks::is_close(&word.to_ascii_uppercase(), "ARRAY") => {
+                Some("did you mean `ARRAY`?".into())
+            }
+            _ if before.kind == Tok::Id => Some(format!("a subrange is written `{word} (0..100)`")),
+            _ => None,
+        }
+    }
+
+    /// Whether `at` stands in a parenthesis behind the `:=` of a declaration.
+    fn list_in_parens(&self, at: usize) -> bool {
+        let open = self.opener(at).filter(|open| self.kind(*open) == Tok::LParen);
+        open.is_some_and(|open| self.kind(open.wrapping_sub(1)) == Tok::Assign)
+            && self.surroundings(at) == Surroundings::Declarations
+    }
+
+    /// Whether `at` stands behind the `:=` of a statement.
+    fn behind_assign(&self, at: usize) -> bool {
+        let start = self.segment(at).start.min(at);
+        self.surroundings(at) == Surroundings::Statements
+            && self.tokens[start..at].iter().any(|t| t.kind == Tok::Assign)
     }
 
     /// Whether `at` stands in a condition: behind IF, ELSIF, WHILE or UNTIL, outside of any parenthesis.
