@@ -14,7 +14,7 @@ use plcc_hir::{Body, Defs, PouId, Section, Type, VarId};
 use plcc_stdlib::funcs::TextOp;
 use plcc_stdlib::prim::Repr;
 use plcc_stdlib::rt::strings::TextFns;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// What a tail is the tail of, and the place in the frame for how many characters lie in front of it, an I64.
 #[derive(Debug, Clone)]
@@ -26,9 +26,15 @@ pub(super) struct Tail {
 /// The variables of a function that are lowered as tails.
 pub(super) fn of_function(defs: &Defs, function: PouId) -> FxHashMap<VarId, Tail> {
     let body = &defs.bodies[function];
+    // Few are assigned a whole variable at the outermost level, and only these need a closer look.
+    let assigned: FxHashSet<VarId> = body.stmts.iter().filter_map(begins).collect();
     let locals = defs.pous[function].vars.iter().filter(|id| {
         let var = &defs.vars[**id];
-        var.section == Section::Local && !var.address_taken && var.address.is_none() && capacity(defs, **id).is_some()
+        assigned.contains(id)
+            && var.section == Section::Local
+            && !var.address_taken
+            && var.address.is_none()
+            && capacity(defs, **id).is_some()
     });
     let mut found = FxHashMap::default();
     for &local in locals {
@@ -37,6 +43,16 @@ pub(super) fn of_function(defs: &Defs, function: PouId) -> FxHashMap<VarId, Tail
         }
     }
     found
+}
+
+/// The variable that a statement makes another one.
+fn begins(stmt: &Stmt) -> Option<VarId> {
+    match &stmt.kind {
+        StmtKind::Assign { target: body::Place { root: Root::Var(var), steps, .. }, value } if steps.is_empty() => {
+            variable(value).map(|_| *var)
+        }
+        _ => None,
+    }
 }
 
 /// Kind and capacity of a string of fixed capacity whose length an INT tells.

@@ -16,9 +16,13 @@ use crate::dominators::Dominators;
 use crate::ir::{Base, BlockId, Func, Inst, Place, Term};
 use crate::visit;
 use rustc_hash::FxHashSet;
+use std::cell::Cell;
 
 /// So many blocks are looked at on the way back from a copy, and as many behind it.
 const BLOCKS: usize = 64;
+
+/// And so many instructions in both directions together.
+const INSTS: usize = 2000;
 
 /// A copy of bytes of the frame to a fixed place.
 struct Move {
@@ -53,7 +57,8 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let (tree, constants) = (Dominators::new(func), Constants::new(func));
     let mut done: FxHashSet<(BlockId, usize)> = FxHashSet::default();
     for one in moves {
-        let look = Look { func, alias, constants: &constants, tree: &tree, done: &done, one: &one };
+        let left = Cell::new(INSTS);
+        let look = Look { func, alias, constants: &constants, tree: &tree, done: &done, one: &one, left };
         let Some(accesses) = look.accesses().filter(|_| look.is_dead_behind()) else { continue };
         for (block, inst) in accesses {
             visit::places(&mut func.blocks[block].insts[inst], &mut |place| {
@@ -94,9 +99,17 @@ struct Look<'a> {
     /// Copies that are not done any more.
     done: &'a FxHashSet<(BlockId, usize)>,
     one: &'a Move,
+    /// Instructions that may still be looked at.
+    left: Cell<usize>,
 }
 
 impl Look<'_> {
+    /// Counts one more instruction; `None` if these are too many.
+    fn step(&self) -> Option<()> {
+        self.left.set(self.left.get().checked_sub(1)?);
+        Some(())
+    }
+
     /// All accesses to the bytes between their whole writes and the copy; `None` if the target cannot take their place.
     fn accesses(&self) -> Option<Vec<(BlockId, usize)>> {
         let mut found = Vec::new();
@@ -135,6 +148,7 @@ impl Look<'_> {
     /// Goes back in a block from an instruction on; whether the bytes were written as a whole.
     fn back(&self, block: BlockId, end: usize, found: &mut Vec<(BlockId, usize)>) -> Option<bool> {
         for n in (0..end).rev().filter(|n| !self.done.contains(&(block, *n))) {
+            self.step()?;
             match self.role(&self.func.blocks[block].insts[n]) {
                 Role::None => {}
                 Role::Part => found.push((block, n)),
@@ -230,6 +244,7 @@ impl Look<'_> {
             if self.done.contains(&(block.0, n)) {
                 continue;
             }
+            self.step()?;
             if self.reads(inst, from) {
                 return None;
             }
