@@ -161,6 +161,8 @@ pub struct Generator {
     arrays: Vec<(String, i64, i64, Ty)>,
     /// References and the types of their targets.
     references: Vec<(String, Ty)>,
+    /// The input of this function that `rest` was at the beginning, and its type.
+    tail: Option<(String, Ty)>,
     loops: u32,
     loop_vars: Vec<String>,
     free_loop_vars: Vec<String>,
@@ -184,6 +186,7 @@ pub fn program(seed: u64, prefix: &str, faults: bool) -> String {
         instances: Vec::new(),
         arrays: Vec::new(),
         references: Vec::new(),
+        tail: None,
         loops: 0,
         loop_vars: Vec::new(),
         free_loop_vars: Vec::new(),
@@ -230,6 +233,7 @@ impl Generator {
         self.instances.clear();
         self.arrays.clear();
         self.references.clear();
+        self.tail = None;
         self.loop_vars.clear();
         self.free_loop_vars.clear();
     }
@@ -392,7 +396,9 @@ impl Generator {
         self.line(&format!("FUNCTION {name} : {}", result.name()));
         self.indent = 1;
         let count = self.rng.usize(1..4);
-        let params = self.declare("VAR_INPUT", "p", count, false).into_iter().map(|(_, ty)| ty).collect();
+        let inputs = self.declare("VAR_INPUT", "p", count, false);
+        let text = inputs.iter().find(|(_, ty)| matches!(ty, Ty::Text { .. })).cloned();
+        let params = inputs.into_iter().map(|(_, ty)| ty).collect();
         let in_out = self.chance(30);
         let output = self.chance(30);
         if in_out {
@@ -419,6 +425,15 @@ impl Generator {
             self.vars.push(Var { text: "o".into(), ty: Ty::Int { bits: 16, signed: true }, write: true });
         }
         self.locals(false);
+        if let Some((input, ty)) = text.filter(|_| self.chance(60)) {
+            self.line(&format!("VAR rest : {}; END_VAR", ty.name()));
+            if self.chance(10) {
+                self.statements(2);
+            }
+            self.line(&format!("rest := {input};"));
+            self.vars.push(Var { text: "rest".into(), ty, write: false });
+            self.tail = Some((input, ty));
+        }
         self.statements(3);
         let value = self.expr(result, 2);
         self.line(&format!("{name} := {value};"));
@@ -525,6 +540,56 @@ impl Generator {
         self.indent -= 1;
     }
 
+    /// A string that becomes shorter from its front, and what is read of it.
+    fn take_apart(&mut self, input: &str, ty: Ty) {
+        let Ty::Text { wide, .. } = ty else { return };
+        let quote = if wide { '"' } else { '\'' };
+        let unit = format!("{quote}{}{quote}", ["a", "b", "1", " "][self.rng.usize(0..4)]);
+        let text = match self.rng.u32(0..20) {
+            0..=3 => format!("rest := DELETE(rest, {}, 1);", self.position(1)),
+            4..=8 => format!("rest := DELETE(rest, FIND(rest, {unit}), 1);"),
+            9 | 10 => format!("rest := {input};"),
+            11 => format!("rest := DELETE(rest, {}, {});", self.position(0), self.position(0)),
+            kind => {
+                let Some(var) = self.writable() else { return };
+                match (var.ty, kind) {
+                    (Ty::Text { wide: other, .. }, 12..=15) if other == wide => {
+                        format!("{} := LEFT(rest, FIND(rest, {unit}) - 1);", var.text)
+                    }
+                    (Ty::Text { wide: other, .. }, _) if other == wide => format!("{} := rest;", var.text),
+                    (Ty::Int { bits: 16, signed: true }, 12..=15) => format!("{} := LEN(rest);", var.text),
+                    (Ty::Bool, _) => format!("{} := LEFT(rest, 2) = {};", var.text, self.literal(ty)),
+                    _ => return,
+                }
+            }
+        };
+        self.line(&text);
+    }
+
+    /// A string that is built from what it was.
+    fn put_together(&mut self, var: &Var) {
+        let (name, ty) = (&var.text, var.ty);
+        let text = match self.rng.u32(0..12) {
+            0..=2 => format!("{name} := CONCAT({name}, {});", self.literal(ty)),
+            3..=5 => format!("{name} := CONCAT({name}, {}, {});", self.literal(ty), self.expr(ty, 1)),
+            6 | 7 => {
+                let number = self.expr(DINT, 1);
+                format!("{name} := CONCAT({name}, DINT_TO_{}({number}), {});", ty.keyword(), self.literal(ty))
+            }
+            8..=10 => {
+                let new = self.expr(ty, 1);
+                format!("{name} := REPLACE({name}, {new}, {}, {});", self.position(1), self.position(1))
+            }
+            _ => format!(
+                "IF LEFT({name}, {}) = {} THEN {name} := {}; END_IF;",
+                self.rng.u32(0..4),
+                self.literal(ty),
+                self.literal(ty)
+            ),
+        };
+        self.line(&text);
+    }
+
     fn assign(&mut self) {
         if self.vars.iter().any(|v| v.text == "s.a") && self.chance(8) {
             let text = match self.rng.u32(0..4) {
@@ -549,7 +614,15 @@ impl Generator {
             self.line(&text);
             return;
         }
+        if let (Some((input, ty)), true) = (self.tail.clone(), self.chance(25)) {
+            self.take_apart(&input, ty);
+            return;
+        }
         let Some(var) = self.writable() else { return };
+        if let (Ty::Text { .. }, true) = (var.ty, self.chance(25)) {
+            self.put_together(&var);
+            return;
+        }
         if let (Ty::Bits(bits), true) = (var.ty, self.chance(20)) {
             let value = self.expr(Ty::Bool, 2);
             let bit = self.rng.u32(0..bits);

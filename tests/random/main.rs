@@ -2,7 +2,7 @@
 //! second one after the optimiser), and the same trace when many of them are linked into one executable.
 //!
 //! `RANDOM_PROGRAMS` (default 400) says how many for interpreter against JIT, `RANDOM_LINKED` (default 60) how many for the
-//! linked batches, `RANDOM_PASSES` (default 80) how many for the passes of the optimiser, `RANDOM_SEED` where to start. A
+//! linked batches, `RANDOM_TEXTS` (default 150) how many for work on strings, `RANDOM_PASSES` (default 80) how many for the passes of the optimiser, `RANDOM_SEED` where to start. A
 //! failure prints the seed and the program.
 
 mod generate;
@@ -10,6 +10,7 @@ mod il;
 mod lanes;
 mod loops;
 mod passes;
+mod texts;
 
 use plcc_hir::Profile;
 use plcc_tests::passes::{Run, native_agrees};
@@ -190,6 +191,10 @@ fn the_generator_uses_every_form() {
         "FOR ",
         ".act();",
         "s := t;",
+        "rest := DELETE(rest, FIND(rest, 'a'), 1);",
+        ":= LEFT(rest, FIND(rest, 'b') - 1);",
+        ":= LEFT(rest, 2) = ",
+        ":= LEN(rest);",
     ] {
         assert!(text.contains(form), "no program uses `{form}`");
     }

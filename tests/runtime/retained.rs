@@ -50,6 +50,46 @@ fn a_warm_start_goes_on_a_cold_one_begins_again() {
     assert_eq!(run(&[]), "3,6,3,6,3,6,3,6,Heating,'run'");
 }
 
+/// A stored action in the middle of its time, and one that no step holds any more; `%` is where a step and an action come in
+/// front of them.
+const CHART: &str = "
+FUNCTION_BLOCK Seq
+VAR_OUTPUT pump, motor, siren : BOOL; END_VAR
+INITIAL_STEP Start: END_STEP
+TRANSITION FROM Start TO Fill := TRUE; END_TRANSITION
+%
+STEP Fill: motor(S); END_STEP
+TRANSITION FROM Fill TO Hold := TRUE; END_TRANSITION
+STEP Hold: pump(D, T#70ms); END_STEP
+TRANSITION FROM Hold TO Start := FALSE; END_TRANSITION
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR RETAIN s : Seq; END_VAR
+s();
+END_PROGRAM
+";
+
+#[test]
+fn a_chart_that_was_edited_goes_on() {
+    let more = "STEP Alarm: siren(SD, T#0ms); END_STEP TRANSITION FROM Alarm TO Start := TRUE; END_TRANSITION
+        TRANSITION FROM Start TO Alarm := FALSE; END_TRANSITION";
+    let plant = Plant::new(&[("old.st", &CHART.replace('%', "")), ("new.st", &CHART.replace('%', more))]);
+    let watch = "Main.s.Hold.X,Main.s.Fill.X,Main.s.motor,Main.s.pump,Main.s.siren";
+    let run = |file: &str, cycles: &str| {
+        let args = ["run", file, "--virtual-time", "--cycles", cycles, "--retain", "r", "--watch", watch];
+        let done = plant.plcc(&args);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        done.stdout.lines().skip(1).map(|l| l.split_once(',').map_or("", |l| l.1).to_string()).collect::<Vec<_>>()
+    };
+    // Fill acts in the second call, Hold from the third on: the pump's delay is not over in the fifth.
+    assert_eq!(run("old.st", "5").last().map(String::as_str), Some("TRUE,FALSE,TRUE,FALSE,FALSE"));
+    // The motor stays stored from the first call on; the delay began at 20 ms, and virtual time begins again at 0.
+    let rows = run("new.st", "10");
+    assert_eq!(rows[0], "TRUE,FALSE,TRUE,FALSE,FALSE");
+    assert_eq!(rows[8], "TRUE,FALSE,TRUE,FALSE,FALSE");
+    assert_eq!(rows[9], "TRUE,FALSE,TRUE,TRUE,FALSE");
+}
+
 #[test]
 fn retained_values_are_shown_and_compared() {
     let plant = Plant::new(&[("m.st", SETS)]);

@@ -10,6 +10,7 @@ use plcc_stdlib::fault::Fault;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::rt::RtFn;
 use plcc_stdlib::rt::strings::TextFn;
+use std::sync::Arc;
 
 index_vec::define_index_type! {
     /// A function of the program.
@@ -397,6 +398,8 @@ pub struct TextPlace {
     pub place: Place,
     /// Characters that it can hold, I32; the closing 0 lies behind them.
     pub capacity: ValueId,
+    /// The bytes in front of the first 0 of a constant.
+    pub constant: Option<Arc<[u8]>>,
 }
 
 /// A variable part of a place.

@@ -11,5 +11,6 @@ mod operands;
 pub mod opt;
 pub mod print;
 pub mod resources;
+mod short_text;
 pub mod verify;
 pub mod visit;

@@ -27,19 +27,27 @@ pub fn value(elem: Elem, text: &[u8]) -> u64 {
     }
 }
 
-/// What nearly every text is: blanks, a minus, up to 18 digits. The rest is left to [`integer`].
-fn short_decimal(text: &[u8]) -> Option<i64> {
+/// What nearly every text is: blanks, a minus, up to 18 digits, and something else or the end. The rest is left to
+/// [`integer`]. The text may go on behind a 0, at which it ends.
+pub fn short_decimal(text: &[u8]) -> Option<i64> {
     let blanks = text.iter().take_while(|c| matches!(c, b' ' | b'\t')).count();
     let (negative, digits) = match &text[blanks..] {
         [b'-', digits @ ..] => (true, digits),
         digits => (false, digits),
     };
-    let count = digits.iter().take_while(|c| c.is_ascii_digit()).count();
-    if !(1..=18).contains(&count) || matches!(digits.get(count), Some(b'#' | b'_')) {
-        return None;
+    let mut value = 0i64;
+    for (n, c) in digits.iter().enumerate() {
+        let digit = c.wrapping_sub(b'0');
+        if digit > 9 {
+            let more = matches!(c, b'#' | b'_') || n == 0 && *c != 0;
+            return (!more).then_some(if negative { -value } else { value });
+        }
+        if n == 18 {
+            return None;
+        }
+        value = value * 10 + i64::from(digit);
     }
-    let value = digits[..count].iter().fold(0, |value: i64, c| value * 10 + i64::from(c - b'0'));
-    Some(if negative { -value } else { value })
+    (!digits.is_empty()).then_some(if negative { -value } else { value })
 }
 
 /// The characters before the first one outside ASCII: no value has such a character.

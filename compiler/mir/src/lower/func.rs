@@ -34,6 +34,9 @@ pub(super) fn lower(cx: &mut Context<'_>, pou: PouId) -> Func {
     let body = &defs.bodies[pou];
     let frame_bytes = cx.layout.frame_bytes(variables);
     let mut f = FuncLower::new(cx, builder, name, Some(body), frame_bytes);
+    if function {
+        f.tails = super::tails::of_function(defs, pou);
+    }
     let (entry, start, exit) = (BlockId::from_raw(0), f.b.block(), f.b.block());
     f.exit = exit;
     for (n, (var, _)) in params.iter().enumerate() {
@@ -112,6 +115,8 @@ pub(super) struct FuncLower<'c, 'a> {
     temps: IndexVec<TempId, Option<u32>>,
     /// Memory for strings that an expression makes.
     pub text_temps: super::text::Temps,
+    /// Strings that are lowered as a part of another one.
+    pub(super) tails: FxHashMap<VarId, super::tails::Tail>,
     /// Variables in the frame (or in the static place of one whose address is taken) that the body uses.
     used: FxHashSet<VarId>,
     names: FxHashMap<(Base, u32), String>,
@@ -141,6 +146,7 @@ impl<'c, 'a> FuncLower<'c, 'a> {
             frame_bytes: u64::from(frame_bytes),
             temps: body.map(|b| b.temps.iter().map(|_| None).collect()).unwrap_or_default(),
             text_temps: super::text::Temps::default(),
+            tails: FxHashMap::default(),
             used: FxHashSet::default(),
             names: FxHashMap::default(),
             has_source: false,

@@ -19,6 +19,7 @@ pub mod reach;
 mod std_call;
 mod stmt;
 mod string;
+mod tails;
 mod task;
 mod text;
 mod text_ops;

@@ -65,6 +65,9 @@ impl FuncLower<'_, '_> {
 
     /// Left to right: the checks of the target come before the value.
     fn assign(&mut self, target: &Place, value: &Expr) {
+        if self.assign_tail(target, value) {
+            return;
+        }
         let to = self.place(target);
         if repr(self.defs, target.ty).is_some() {
             let value = self.value(value);

@@ -15,7 +15,7 @@ use plcc_stdlib::funcs::TextOp;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::rt::strings::TextFns;
 use plcc_stdlib::value::longest_text;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Strings of at most so many bytes are copied by their capacity, without looking for their end.
 const INLINE_BYTES: u32 = 128;
@@ -37,7 +37,7 @@ pub(super) struct Text {
     /// One of several that SEL and its kind chose at run time, maybe of the own frame.
     pub(super) chosen: bool,
     /// The bytes in front of the first 0 of a constant.
-    pub(super) constant: Option<Rc<[u8]>>,
+    pub(super) constant: Option<Arc<[u8]>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +48,11 @@ pub(super) enum Capacity {
 }
 
 impl Text {
+    /// A variable.
+    pub(super) fn at(place: Place, wide: bool, capacity: Capacity) -> Self {
+        Self { place, wide, capacity, own: false, left_over: false, chosen: false, constant: None }
+    }
+
     /// The capacity, if it is fixed.
     pub fn known(&self) -> Option<u32> {
         match self.capacity {
@@ -145,15 +150,7 @@ impl FuncLower<'_, '_> {
             },
             _ => return None,
         };
-        Some(Text {
-            place: access.place.clone(),
-            wide,
-            capacity,
-            own: false,
-            left_over: false,
-            chosen: false,
-            constant: None,
-        })
+        Some(Text::at(access.place.clone(), wide, capacity))
     }
 
     /// The inverse of [`FuncLower::text_at`], for a type of strings.
@@ -173,6 +170,11 @@ impl FuncLower<'_, '_> {
     pub fn text(&mut self, expr: &Expr) -> Text {
         match &expr.kind {
             ExprKind::Read(place) => {
+                if let Some(tail) = self.tail_of(expr) {
+                    let temp = self.text_temp(tail.0.wide, self.bound(expr));
+                    self.build_tail(&temp, &tail, None);
+                    return temp;
+                }
                 let access = self.place(place);
                 self.text_at(&access).unwrap_or_else(|| bug!("a string from {:?}", self.defs.types[expr.ty]))
             }
@@ -205,6 +207,11 @@ impl FuncLower<'_, '_> {
                 temp
             }
             ExprKind::Text { op, wide, args } => {
+                if let Some(tail) = self.left_of_tail(*op, args) {
+                    let temp = self.text_temp(*wide, self.bound(expr));
+                    self.build_tail(&temp, &tail.0, Some(tail.1));
+                    return temp;
+                }
                 let operands = self.operands(args);
                 match self.chosen(*op, &operands) {
                     Some(text) => text,
@@ -232,6 +239,9 @@ impl FuncLower<'_, '_> {
 
     /// Stores the string that an expression gives.
     pub fn text_into(&mut self, expr: &Expr, to: &Text) {
+        if let Some(tail) = self.tail_of(expr) {
+            return self.build_tail(to, &tail, None);
+        }
         let ExprKind::Text { op, wide, args } = &expr.kind else {
             let from = self.text(expr);
             return self.copy_text(to, &from);
@@ -245,9 +255,19 @@ impl FuncLower<'_, '_> {
             }
             return;
         }
+        if let Some((tail, length)) = self.left_of_tail(*op, args) {
+            return self.build_tail(to, &tail, Some(length));
+        }
         let operands = self.operands(args);
         if let Some(from) = self.chosen(*op, &operands) {
             return self.copy_text(to, &from);
+        }
+        if let (TextOp::Replace, [first, new]) = (op, operands.texts.as_slice())
+            && same(first, to)
+            && disjoint(to, new)
+        {
+            self.call_text(&TextFns::of(*wide).change, &[to, new], &operands.values);
+            return;
         }
         // What gives a part of a string may be built over that string itself.
         let part = matches!(op, TextOp::Left | TextOp::Right | TextOp::Mid | TextOp::Delete);
@@ -256,6 +276,13 @@ impl FuncLower<'_, '_> {
         } else {
             self.aside(expr, *wide, to, |s, temp| s.build(*op, &operands, temp));
         }
+    }
+
+    /// LEFT of a tail: it, and how many characters.
+    fn left_of_tail(&mut self, op: TextOp, args: &[Expr]) -> Option<((Text, ValueId), ValueId)> {
+        let [text, length] = args else { return None };
+        let tail = if op == TextOp::Left { self.tail_of(text) } else { None }?;
+        Some((tail, self.value(length)))
     }
 
     /// Builds the string of an expression in a temporary and copies it.
@@ -322,7 +349,7 @@ impl FuncLower<'_, '_> {
     fn constant_text(&mut self, bytes: Vec<u8>, wide: bool) -> Text {
         let unit = if wide { 2 } else { 1 };
         let end = bytes.chunks(unit).position(|unit| unit.iter().all(|byte| *byte == 0));
-        let shown: Rc<[u8]> = bytes[..end.map_or(bytes.len(), |n| n * unit)].into();
+        let shown: Arc<[u8]> = bytes[..end.map_or(bytes.len(), |n| n * unit)].into();
         let capacity = Capacity::Known((bytes.len() / unit) as u32);
         let place = self.string_constant(bytes, unit);
         Text { place, wide, capacity, own: true, left_over: false, chosen: false, constant: Some(shown) }

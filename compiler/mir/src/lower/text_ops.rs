@@ -4,17 +4,16 @@
 use super::func::FuncLower;
 use super::place::Access;
 use super::text::{Capacity, Text, disjoint, same};
-use crate::ir::{Base, IndexTerm, Place, TextPlace, ValueId};
+use crate::ir::{Base, Place, TextPlace, ValueId};
+use crate::short_text::{SHORT_BYTES, words};
 use plcc_diag::bug;
+use plcc_hir::Type;
 use plcc_hir::body::{Expr, ExprKind};
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::funcs::TextOp;
 use plcc_stdlib::ops::Op;
 use plcc_stdlib::prim::{PrimOp, Repr};
 use plcc_stdlib::rt::strings::{TextFn, TextFns};
-
-/// Constants of at most so many bytes, the closing 0 with them, stand in the code.
-const SHORT_BYTES: u32 = 16;
 
 /// What CONCAT joins.
 #[derive(Debug)]
@@ -60,17 +59,11 @@ impl FuncLower<'_, '_> {
 
     /// Puts pieces one behind the other, behind the first `end` characters of a string (which has them).
     pub(super) fn concat(&mut self, pieces: &[Piece], to: &Text, end: Option<ValueId>) {
-        let fns = TextFns::of(to.wide);
         let mut end = end;
         for piece in pieces {
             end = Some(match piece {
                 Piece::Text(text) => self.put(to, text, end),
-                Piece::Number(value, elem) => {
-                    let raw = self.register_of(*value);
-                    let code = self.b.number(Repr::I64, u64::from(elem.code()));
-                    let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
-                    self.call_text(&fns.write, &[to], &[start, raw, code])
-                }
+                Piece::Number(value, elem) => self.write(to, end, *value, *elem),
             });
         }
     }
@@ -78,36 +71,17 @@ impl FuncLower<'_, '_> {
     /// Puts a string behind the first characters of another, none if `end` is; gives the new length.
     fn put(&mut self, to: &Text, text: &Text, end: Option<ValueId>) -> ValueId {
         let unit = to.unit_bytes();
-        let short = text.constant.clone().filter(|bytes| bytes.len() as u32 + unit <= SHORT_BYTES);
-        let fits = |bytes: &[u8]| to.known()?.checked_sub(bytes.len() as u32 / unit);
-        let Some((bytes, last)) = short.and_then(|bytes| Some((bytes.clone(), fits(&bytes)?))) else {
-            let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
-            return self.call_text(&TextFns::of(to.wide).put, &[to, text], &[start]);
-        };
-        let length = u64::from(bytes.len() as u32 / unit);
-        let closed = [&bytes, &[0, 0][..unit as usize]].concat();
-        let Some(end) = end else {
-            self.store_bytes(&to.place, &closed);
-            return self.b.number(Repr::I64, length);
-        };
-        // Few are cut: the characters are in the code.
-        let limit = self.b.number(Repr::I64, u64::from(last));
-        let whole = self.b.op(PrimOp::LeS, Repr::I64, &[end, limit]);
-        let (fit, cut, done) = (self.b.block(), self.b.block(), self.b.block());
-        let result = self.b.block_param(done, Repr::I64);
-        self.b.branch(whole, fit, cut);
-        self.b.switch_to(fit);
-        let mut place = to.place.clone();
-        place.index.push(IndexTerm { value: end, stride: unit, low: 0, high: i64::from(last) });
-        self.store_bytes(&place, &closed);
-        let length = self.b.number(Repr::I64, length);
-        let sum = self.b.op(PrimOp::Add, Repr::I64, &[end, length]);
-        self.b.jump(done, &[sum]);
-        self.b.switch_to(cut);
-        let sum = self.call_text(&TextFns::of(to.wide).put, &[to, text], &[end]);
-        self.b.jump(done, &[sum]);
-        self.b.switch_to(done);
-        result
+        let fits = |bytes: &[u8]| to.known().is_some_and(|capacity| bytes.len() as u32 / unit <= capacity);
+        match &text.constant {
+            Some(bytes) if end.is_none() && bytes.len() as u32 + unit <= SHORT_BYTES && fits(bytes) => {
+                self.store_bytes(&to.place, &[bytes, &[0, 0][..unit as usize]].concat());
+                self.b.number(Repr::I64, u64::from(bytes.len() as u32 / unit))
+            }
+            _ => {
+                let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
+                self.call_text(&TextFns::of(to.wide).put, &[to, text], &[start])
+            }
+        }
     }
 
     fn store_bytes(&mut self, place: &Place, bytes: &[u8]) {
@@ -120,6 +94,9 @@ impl FuncLower<'_, '_> {
     /// An operation on strings that gives an elementary value.
     pub fn text_value(&mut self, op: TextOp, wide: bool, args: &[Expr], expr: &Expr) -> ValueId {
         let fns = TextFns::of(wide);
+        if let Some(value) = self.tail_value(op, args).or_else(|| self.starts_with(op, args)) {
+            return value;
+        }
         let operands = self.operands(args);
         self.at(expr.span, "");
         match op {
@@ -128,7 +105,13 @@ impl FuncLower<'_, '_> {
                 self.b.resize(length, true, Elem::Int.repr())
             }
             TextOp::Find => {
-                let position = self.call_text(&fns.find, &operands.refs(), &[]);
+                let position = match single_unit(&args[1]) {
+                    Some(unit) => {
+                        let (unit, start) = (self.b.number(Repr::I64, unit), self.b.number(Repr::I64, 0));
+                        self.call_text(&fns.find_unit, &[&operands.texts[0]], &[unit, start])
+                    }
+                    None => self.call_text(&fns.find, &operands.refs(), &[]),
+                };
                 self.b.resize(position, true, Elem::Int.repr())
             }
             TextOp::Read(elem) => {
@@ -151,9 +134,55 @@ impl FuncLower<'_, '_> {
         }
     }
 
+    /// LEN of a tail, and FIND of one character in it.
+    fn tail_value(&mut self, op: TextOp, args: &[Expr]) -> Option<ValueId> {
+        let value = match (op, args) {
+            (TextOp::Len, [text]) => {
+                let (source, skipped) = self.tail_of(text)?;
+                let most = self.b.number(Repr::I64, i64::MAX as u64);
+                let end = self.call_text(&TextFns::of(source.wide).skip, &[&source], &[skipped, most]);
+                self.b.op(PrimOp::Sub, Repr::I64, &[end, skipped])
+            }
+            (TextOp::Find, [text, wanted]) => {
+                let unit = single_unit(wanted)?;
+                let (source, skipped) = self.tail_of(text)?;
+                let unit = self.b.number(Repr::I64, unit);
+                self.call_text(&TextFns::of(source.wide).find_unit, &[&source], &[unit, skipped])
+            }
+            _ => return None,
+        };
+        Some(self.b.resize(value, true, Elem::Int.repr()))
+    }
+
+    /// `LEFT(s, n) = 'constant'`: nothing need be built for that.
+    fn starts_with(&mut self, op: TextOp, args: &[Expr]) -> Option<ValueId> {
+        let (TextOp::Compare(op @ (Op::Eq | Op::Ne)), [a, b]) = (op, args) else { return None };
+        let is_constant = |e: &Expr| matches!(e.kind, ExprKind::String(_) | ExprKind::WString(_));
+        let (left, constant) = if is_constant(b) { (a, b) } else { (b, a) };
+        let ExprKind::Text { op: TextOp::Left, args, .. } = &left.kind else { return None };
+        let [text @ Expr { kind: ExprKind::Read(place), .. }, Expr { kind: ExprKind::Const(count), .. }] =
+            args.as_slice()
+        else {
+            return None;
+        };
+        if !matches!(self.defs.types[text.ty], Type::String { .. }) || self.is_tail(place) {
+            return None;
+        }
+        let count = usize::try_from(*count as i64).ok().filter(|_| is_constant(constant))?;
+        let constant = self.text(constant);
+        let units = constant.constant.as_ref()?.len() / constant.unit_bytes() as usize;
+        // If the part is longer, the whole string must be the constant.
+        if units == 0 || units > count || constant.constant.as_ref()?.len() as u32 + 2 > SHORT_BYTES {
+            return None;
+        }
+        let text = self.text(text);
+        let equal = self.equals_constant(&text, &constant, units == count)?;
+        Some(if op == Op::Eq { equal } else { self.b.not(equal) })
+    }
+
     fn compare(&mut self, op: Op, a: &Text, b: &Text) -> ValueId {
         if let Op::Eq | Op::Ne = op
-            && let Some(equal) = self.equals_constant(a, b).or_else(|| self.equals_constant(b, a))
+            && let Some(equal) = self.equals_constant(a, b, false).or_else(|| self.equals_constant(b, a, false))
         {
             return if op == Op::Eq { equal } else { self.b.not(equal) };
         }
@@ -170,15 +199,15 @@ impl FuncLower<'_, '_> {
         self.b.op(prim, Repr::I64, &sides)
     }
 
-    /// Whether a string is a short constant: its bytes are compared at once.
-    fn equals_constant(&mut self, text: &Text, constant: &Text) -> Option<ValueId> {
+    /// Whether a string is a short constant, or begins with it: the bytes are compared at once.
+    fn equals_constant(&mut self, text: &Text, constant: &Text, begins: bool) -> Option<ValueId> {
         let (bytes, unit) = (constant.constant.clone()?, text.unit_bytes());
         let room = text.known()? * unit;
         if bytes.len() as u32 > room {
             return Some(self.b.number(Repr::I8, 0));
         }
         // A string that is full ends there.
-        let end: &[u8] = if bytes.len() as u32 == room { &[] } else { &[0, 0][..unit as usize] };
+        let end: &[u8] = if begins || bytes.len() as u32 == room { &[] } else { &[0, 0][..unit as usize] };
         let bytes = [&bytes, end].concat();
         if bytes.len() as u32 > SHORT_BYTES {
             return None;
@@ -283,10 +312,7 @@ impl FuncLower<'_, '_> {
         let fns = TextFns::of(to.wide);
         let f = match op {
             TextOp::Write(elem) => {
-                let raw = self.register_of(operands.values[0]);
-                let code = self.b.number(Repr::I64, u64::from(elem.code()));
-                let start = self.b.number(Repr::I64, 0);
-                self.call_text(&fns.write, &[to], &[start, raw, code]);
+                self.write(to, None, operands.values[0], elem);
                 return;
             }
             TextOp::Left => &fns.left,
@@ -302,6 +328,19 @@ impl FuncLower<'_, '_> {
         self.call_text(f, &texts, &operands.values);
     }
 
+    /// Writes the text of a value behind the first characters of a string, none if `end` is; gives the new length.
+    fn write(&mut self, to: &Text, end: Option<ValueId>, value: ValueId, elem: Elem) -> ValueId {
+        let fns = TextFns::of(to.wide);
+        let start = end.unwrap_or_else(|| self.b.number(Repr::I64, 0));
+        if elem.is_integer() && elem != Elem::Ulint {
+            let value = self.b.resize(value, elem.is_signed(), Repr::I64);
+            return self.call_text(&fns.whole, &[to], &[start, value]);
+        }
+        let raw = self.register_of(value);
+        let code = self.b.number(Repr::I64, u64::from(elem.code()));
+        self.call_text(&fns.write, &[to], &[start, raw, code])
+    }
+
     /// Writes the text of a value into a string.
     pub fn write_text(&mut self, value: ValueId, elem: Elem, to: &Access) {
         let Some(to) = self.text_at(to) else { bug!("{:?} is no string", self.defs.types[to.ty]) };
@@ -309,8 +348,12 @@ impl FuncLower<'_, '_> {
     }
 
     pub(super) fn call_text(&mut self, f: &'static TextFn, texts: &[&Text], values: &[ValueId]) -> ValueId {
-        let places: Vec<TextPlace> =
-            texts.iter().map(|text| TextPlace { place: text.place.clone(), capacity: self.capacity(text) }).collect();
+        let place = |text: &&Text| TextPlace {
+            place: text.place.clone(),
+            capacity: self.capacity(text),
+            constant: text.constant.clone(),
+        };
+        let places: Vec<TextPlace> = texts.iter().map(place).collect();
         self.b.call_text(f, &places, values)
     }
 
@@ -336,16 +379,16 @@ impl FuncLower<'_, '_> {
     }
 }
 
-/// Bytes cut into words, great ones first: offset, representation and register value.
-fn words(bytes: &[u8]) -> Vec<(u32, Repr, u64)> {
-    let mut words = Vec::new();
-    let mut at = 0;
-    for repr in [Repr::I64, Repr::I32, Repr::I16, Repr::I8] {
-        while let Some(word) = bytes[at..].get(..repr.bytes() as usize) {
-            let raw = word.iter().rev().fold(0, |raw, byte| raw << 8 | u64::from(*byte));
-            words.push((at as u32, repr, raw));
-            at += word.len();
-        }
+/// The one character of a constant that has no other.
+fn single_unit(constant: &Expr) -> Option<u64> {
+    let units: Vec<u64> = match &constant.kind {
+        ExprKind::String(s) => s.iter().take(2).map(|unit| u64::from(*unit)).collect(),
+        ExprKind::WString(s) => s.iter().take(2).map(|unit| u64::from(*unit)).collect(),
+        _ => return None,
+    };
+    match units.as_slice() {
+        [0, ..] | [] => None,
+        [unit] | [unit, 0] => Some(*unit),
+        _ => None,
     }
-    words
 }

@@ -1,6 +1,6 @@
 //! What was copied is read where it came from.
 //!
-//! Along every way the copies are remembered whose two sides have not changed since; loops begin with nothing. What then
+//! Along every way the copies are remembered whose two sides have not changed since; also in a loop that changes neither. What then
 //! reads the copy reads the original: another copy, a load, a string. A copy that nobody reads any more is left out by others.
 //!
 //! ```text
@@ -9,6 +9,7 @@
 //! ```
 
 use super::alias::Alias;
+use super::loops::Bodies;
 use super::rewrite::{Constants, common, writes_memory};
 use crate::dominators::Dominators;
 use crate::ir::{BlockId, Func, Inst, Place};
@@ -42,17 +43,17 @@ pub fn run(func: &mut Func, alias: &Alias) {
     }
     let constants = Constants::new(func);
     let tree = Dominators::new(func);
+    let loops = Bodies::new(func, &tree);
     let mut ends: IndexVec<BlockId, Option<Vec<Equal>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
+        let ways = loops.known_ways(&tree, block, |pred| ends[pred].is_some());
+        let mut known = common(&ways, &ends, |a, b| a == b);
+        loops.retain(func, block, &mut known, |inst, k| !changes(func, alias, &constants, inst, k));
         let mut insts = std::mem::take(&mut func.blocks[block].insts);
-        let mut known = common(&tree.preds[block], &ends, |a, b| a == b);
         for inst in &mut insts {
             redirect(func, alias, &constants, inst, &known);
             if writes_memory(inst) {
-                known.retain(|k| {
-                    !alias.may_write(func, &constants, inst, &k.copy, k.bytes)
-                        && !alias.may_write(func, &constants, inst, &k.original, k.bytes)
-                });
+                known.retain(|k| !changes(func, alias, &constants, inst, k));
             }
             if let Inst::Copy { dst, src, bytes } = inst
                 && !alias.overlap(dst, i64::from(*bytes), src, i64::from(*bytes))
@@ -66,6 +67,12 @@ pub fn run(func: &mut Func, alias: &Alias) {
         func.blocks[block].insts = insts;
         ends[block] = Some(known);
     }
+}
+
+/// Whether an instruction may write one of the two sides.
+fn changes(func: &Func, alias: &Alias, constants: &Constants, inst: &Inst, k: &Equal) -> bool {
+    alias.may_write(func, constants, inst, &k.copy, k.bytes)
+        || alias.may_write(func, constants, inst, &k.original, k.bytes)
 }
 
 fn redirect(func: &Func, alias: &Alias, constants: &Constants, inst: &mut Inst, known: &[Equal]) {

@@ -4,8 +4,6 @@
 //! register, and its memory is never far. Where ways meet, what all of them know stays; if they know different values of a
 //! place and it is read right behind, the block gets a parameter. Loops begin with nothing.
 //!
-//! Inside a block the lengths of strings are known too that were just built or measured: LEN of them is that value.
-//!
 //! ```text
 //! store i8 t.IN := v0
 //! v1 = load i8 t.IN          =>    store i8 t.IN := v0
@@ -19,7 +17,6 @@ use crate::ir::{Block, BlockId, Func, Inst, Place, ValueId};
 use crate::visit;
 use index_vec::IndexVec;
 use plcc_stdlib::prim::Repr;
-use plcc_stdlib::rt::strings::{TextFn, TextFns};
 
 /// So many places are remembered at once.
 const KNOWN: usize = 40;
@@ -55,29 +52,17 @@ struct Meeting {
     values: Vec<ValueId>,
 }
 
-/// A string whose length is known.
-#[derive(Debug, Clone, PartialEq)]
-struct Length {
-    place: Place,
-    capacity: u64,
-    /// Bytes of it in memory, at most.
-    bytes: i64,
-    value: ValueId,
-}
-
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
     let tree = Dominators::new(func);
     let constants = Constants::new(func);
     let mut replace = Replace::new(func);
     let mut clock = 0;
-    let mut lengths: Vec<Length> = Vec::new();
     let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
         let preds = &tree.preds[block];
         let mut known = common(preds, &ends, |k, o| Known { used: k.used, ..o.clone() } == *k);
         let mut meetings = meetings(&func.blocks[block], preds, &ends);
-        lengths.clear();
         let insts = std::mem::take(&mut func.blocks[block].insts);
         let mut out = Vec::with_capacity(insts.len());
         for mut inst in insts {
@@ -104,20 +89,8 @@ pub fn run(func: &mut Func, alias: &Alias) {
                     continue;
                 }
             }
-            if let Some(length) = known_length(&inst, &constants, &lengths)
-                && let (Some(dst), _) = inst.results()
-            {
-                replace.set(dst, length);
-                continue;
-            }
             forget(func, alias, &constants, &inst, &mut known, |k| k);
             forget(func, alias, &constants, &inst, &mut meetings, |m| &m.known);
-            if writes_memory(&inst) {
-                lengths.retain(|l| !alias.may_write(func, &constants, &inst, &l.place, l.bytes));
-            }
-            if let Some(length) = length_of(&inst, &constants) {
-                lengths.push(length);
-            }
             match &inst {
                 Inst::Load { dst, place, normalise } => {
                     let truth = *normalise || place.bit.is_some();
@@ -172,7 +145,7 @@ fn meetings(block: &Block, preds: &[BlockId], ends: &IndexVec<BlockId, Option<Ve
 }
 
 /// A new parameter of a block, with its value from each predecessor.
-fn join(func: &mut Func, block: BlockId, preds: &[BlockId], values: &[ValueId], repr: Repr) -> ValueId {
+pub(super) fn join(func: &mut Func, block: BlockId, preds: &[BlockId], values: &[ValueId], repr: Repr) -> ValueId {
     let param = func.values.push(repr);
     func.blocks[block].params.push(param);
     for (n, pred) in preds.iter().enumerate() {
@@ -207,29 +180,4 @@ fn forget<T>(
             !alias.may_write(func, constants, inst, &k.place, i64::from(k.repr.bytes()))
         });
     }
-}
-
-/// The length of the string that an instruction builds or measures. LEN tells no more than an INT can hold, so only
-/// strings that cannot be longer are known.
-fn length_of(inst: &Inst, constants: &Constants) -> Option<Length> {
-    let Inst::CallText { dst, func, texts, .. } = inst else { return None };
-    let capacity = constants.get(texts[0].capacity).filter(|capacity| *capacity <= i16::MAX as u64)?;
-    (func.builds || is_len(func)).then(|| Length {
-        place: texts[0].place.clone(),
-        capacity,
-        bytes: 2 * (capacity as i64 + 1),
-        value: *dst,
-    })
-}
-
-/// What LEN of a string gives whose length is known.
-fn known_length(inst: &Inst, constants: &Constants, lengths: &[Length]) -> Option<ValueId> {
-    let Inst::CallText { func, texts, .. } = inst else { return None };
-    let capacity = constants.get(texts[0].capacity).filter(|_| is_len(func))?;
-    let known = lengths.iter().rev().find(|l| l.place == texts[0].place && l.capacity == capacity);
-    known.map(|l| l.value)
-}
-
-fn is_len(func: &'static TextFn) -> bool {
-    [false, true].iter().any(|wide| std::ptr::eq(func, &raw const TextFns::of(*wide).len))
 }

@@ -34,27 +34,24 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// A loop of more instructions is left alone: its values would be spilled.
 const LARGE: usize = 200;
 
+/// Whether a function has a loop and stores an element of a fitting size at all.
+pub fn may_help(func: &Func) -> bool {
+    let stores = func.blocks.iter().flat_map(|block| &block.insts).any(|inst| match inst {
+        Inst::Store { place, value } => !place.index.is_empty() && lanes::count(func.values[*value]).is_some(),
+        _ => false,
+    });
+    stores && super::may_loop(func)
+}
+
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
     // Passes that are left over come first; then the loop is looked at again.
-    for _ in 0..2 {
-        if !has_candidate(func) {
-            break;
-        }
-        let again = round(func, alias);
+    let again = round(func, alias);
+    super::tidy(func);
+    if again {
+        round(func, alias);
         super::tidy(func);
-        if !again {
-            break;
-        }
     }
-}
-
-/// Whether an element of a fitting size is stored at all: loops are only looked for then.
-fn has_candidate(func: &Func) -> bool {
-    func.blocks.iter().flat_map(|block| &block.insts).any(|inst| match inst {
-        Inst::Store { place, value } => !place.index.is_empty() && lanes::count(func.values[*value]).is_some(),
-        _ => false,
-    })
 }
 
 /// One look at all loops. Gives whether one of them is to be looked at again.

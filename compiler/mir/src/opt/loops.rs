@@ -3,9 +3,9 @@
 //! A loop is a header that dominates the ends of its back-edges, and all blocks on the ways between. Circles with two
 //! entries are no loops; passes leave them alone.
 
-use super::rewrite::to;
+use super::rewrite::{to, writes_memory};
 use crate::dominators::Dominators;
-use crate::ir::{Block, BlockId, Func, Target, Term};
+use crate::ir::{Block, BlockId, Func, Inst, Target, Term};
 use crate::visit;
 use index_vec::IndexVec;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -73,6 +73,39 @@ pub fn find(func: &mut Func) -> Vec<Loop> {
         .collect();
     loops.sort_by_key(|l| (std::cmp::Reverse(l.depth), position[l.header]));
     loops
+}
+
+/// Which blocks each loop has, for passes that follow the ways forwards: what holds in front of a loop and is not changed in it
+/// holds in it.
+pub struct Bodies(FxHashMap<BlockId, FxHashSet<BlockId>>);
+
+impl Bodies {
+    /// Where loops are nested too deep they are not known.
+    pub fn new(func: &Func, tree: &Dominators) -> Self {
+        let bodies = bodies(tree);
+        let work: usize =
+            bodies.iter().flat_map(|(_, body)| body).map(|block| func.blocks[*block].insts.len() + 1).sum();
+        Self(if work > WORK / 100 { FxHashMap::default() } else { bodies.into_iter().collect() })
+    }
+
+    /// The ways into a block that bring what is known: all, or for a loop those from outside. None if a way comes from
+    /// elsewhere that had not its turn yet.
+    pub fn known_ways(&self, tree: &Dominators, block: BlockId, had_turn: impl Fn(BlockId) -> bool) -> Vec<BlockId> {
+        let (known, later): (Vec<BlockId>, Vec<BlockId>) = tree.preds[block].iter().partition(|pred| had_turn(**pred));
+        let inside = |pred: &BlockId| self.0.get(&block).is_some_and(|body| body.contains(pred));
+        if later.iter().all(inside) { known } else { Vec::new() }
+    }
+
+    /// Keeps of what is known in front of a loop with this header what no instruction in it changes.
+    pub fn retain<T>(&self, func: &Func, header: BlockId, known: &mut Vec<T>, keeps: impl Fn(&Inst, &T) -> bool) {
+        let Some(body) = self.0.get(&header) else { return };
+        for inst in body.iter().flat_map(|block| &func.blocks[*block].insts).filter(|inst| writes_memory(inst)) {
+            if known.is_empty() {
+                return;
+            }
+            known.retain(|one| keeps(inst, one));
+        }
+    }
 }
 
 /// Headers and blocks of all loops.

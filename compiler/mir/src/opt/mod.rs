@@ -9,6 +9,7 @@
 mod aggregates;
 mod algebra;
 mod alias;
+mod appends;
 mod clean;
 mod copies;
 mod dead_stores;
@@ -17,6 +18,7 @@ mod fold;
 mod forward;
 mod frames;
 mod hoist;
+mod in_place;
 mod induction;
 mod inline;
 mod jam;
@@ -29,6 +31,7 @@ mod rotate;
 mod scale;
 mod select;
 mod ssa;
+mod texts;
 mod unroll;
 
 use crate::ir::{Func, Program};
@@ -55,6 +58,8 @@ pub fn passes() -> &'static [Pass] {
     const FRAMES: Pass = Pass { name: "frames", run: |p| with_facts(p, frames::run) };
     const FORWARD: Pass = Pass { name: "forward", run: |p| with_facts(p, forward::run) };
     const COPIES: Pass = Pass { name: "copies", run: |p| with_facts(p, copies::run) };
+    // Both ask the same facts, which neither changes.
+    const TEXTS: Pass = Pass { name: "texts", run: |p| with_facts_where(p, has_texts, in_place_and_texts) };
     const DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| with_facts(p, dead_stores::run) };
     const SELECT: Pass = Pass { name: "select", run: |p| with_facts(p, select::run) };
     const HOIST: Pass = Pass { name: "hoist", run: |p| with_facts(p, hoist::run) };
@@ -63,7 +68,7 @@ pub fn passes() -> &'static [Pass] {
     // What loops leave behind: functions without loops have seen it before.
     const LOOP_FOLD: Pass = Pass { name: "fold", run: |p| each_with_loops(p, |f, _| fold_and_clean(f)) };
     const LOOP_FORWARD: Pass = Pass { name: "forward", run: |p| each_with_loops(p, forward::run) };
-    const JAM: Pass = Pass { name: "jam", run: |p| each_with_loops(p, jam::run) };
+    const JAM: Pass = Pass { name: "jam", run: |p| with_facts_where(p, jam::may_help, jam::run) };
     const LOOP_DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| each_with_loops(p, dead_stores::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
@@ -72,6 +77,8 @@ pub fn passes() -> &'static [Pass] {
         Pass { name: "inline", run: |p| inline::run(p, tidy) },
         Pass { name: "aggregates", run: |p| each(p, aggregates::run) },
         FRAMES, TIDY, FORWARD, FOLD, COPIES, DEAD_STORES,
+        TEXTS,
+        Pass { name: "appends", run: |p| each(p, appends::run) },
         SELECT, FOLD, FORWARD, DEAD_STORES, FRAMES, TIDY,
         RANGES, FOLD,
         Pass { name: "promote", run: |p| with_facts(p, promote::run) }, LOOP_FOLD, LOOP_FORWARD, LOOP_FOLD,
@@ -80,7 +87,7 @@ pub fn passes() -> &'static [Pass] {
         SELECT, FOLD, INDUCTION, FOLD,
         // Of small nests only the outer loops are left after the next row.
         JAM,
-        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, COPIES, DEAD_STORES, FOLD,
+        Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, COPIES, TEXTS, DEAD_STORES, FOLD,
         JAM,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
@@ -145,6 +152,19 @@ fn may_loop(func: &Func) -> bool {
         block.term.for_each_target(|target| back |= target.block <= id);
         back
     })
+}
+
+/// Results are built in place, then what is known of strings is not asked again.
+fn in_place_and_texts(func: &mut Func, alias: &alias::Alias) {
+    in_place::run(func, alias);
+    texts::run(func, alias);
+}
+
+/// Whether a function builds, copies or reads aggregates or strings.
+fn has_texts(func: &Func) -> bool {
+    use crate::ir::Inst;
+    let insts = || func.blocks.iter().flat_map(|b| &b.insts);
+    insts().any(|inst| matches!(inst, Inst::CallText { .. } | Inst::Copy { .. }))
 }
 
 /// A pass over functions that needs to know nothing of the others.

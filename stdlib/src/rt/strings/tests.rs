@@ -80,6 +80,19 @@ fn changes() {
         ["XYcdef", "abXYdef", "abXYcdef", "abcdXY"]
     );
     assert_eq!([replace(2, 0), replace(2, 7), replace(2, -2)], ["abcdef"; 3]);
+    // The same in the string itself.
+    for wide in [false, true] {
+        let fns = TextFns::of(wide);
+        for capacity in [6, 7, 9, 20] {
+            for new in ["", "X", "XY", "UVWXYZ and much that cannot be there"] {
+                for (l, p) in (-1..9).flat_map(|l| (-1..9).map(move |p| (l, p))) {
+                    let other = call(wide, &fns.replace, &[("", capacity), ("abcdef", capacity), (new, 40)], &[l, p]);
+                    let itself = call(wide, &fns.change, &[("abcdef", capacity), (new, 40)], &[l, p]);
+                    assert_eq!(itself, other, "{l} {p} {new} {capacity}");
+                }
+            }
+        }
+    }
 }
 
 #[test]
@@ -104,6 +117,66 @@ fn lengths_positions_order() {
     assert_eq!([compare("a", "a"), compare("", ""), compare("a", "b"), compare("b", "ab")], [0, 0, -1, 1]);
     assert_eq!([compare("a", "ab"), compare("ab", "a"), compare("A", "a"), compare("\u{e4}", "z")], [-1, 1, -1, 1]);
     assert_eq!(call(true, &WSTRING.compare, &[("\u{100}", 1), ("\u{ff}", 1)], &[]).1 as i64, 1, "by units, not bytes");
+}
+
+#[test]
+fn behind_the_first_characters() {
+    let find = |unit: char, n| number_of(|f| &f.find_unit, &[("ab;cd;", 8)], &[unit as i64, n]);
+    assert_eq!([find('a', 0), find(';', 0), find(';', 3), find(';', 6), find('a', 1)], [1, 3, 3, 0, 0]);
+    assert_eq!([find('\0', 0), find(';', 99), number_of(|f| &f.find_unit, &[("ab;", 3)], &[59, 2])], [0, 0, 1]);
+    let skip = |n, l| number_of(|f| &f.skip, &[("abcdef", 8)], &[n, l]);
+    assert_eq!([skip(0, 2), skip(2, 3), skip(2, 99), skip(6, 1), skip(1, -4), skip(1, i64::MAX)], [2, 5, 6, 6, 1, 6]);
+    let tail = |n, l| built(|f| &f.tail, 4, &[ABC], &[n, l]);
+    assert_eq!([tail(0, 3), tail(2, i64::MAX), tail(4, 9), tail(6, 1), tail(1, -1)], ["abc", "cdef", "ef", "", ""]);
+}
+
+#[test]
+fn whole_numbers() {
+    let mut numbers = vec![i64::MIN, i64::MAX, 0, -1];
+    for digits in 0..19 {
+        let power = 10i64.pow(digits);
+        numbers.extend([power - 1, power, power + 1, -power, 1 - power, 3 * power / 7, -(8 * power / 9)]);
+    }
+    for number in numbers {
+        let text = number.to_string();
+        assert_eq!(built(|f| &f.whole, 30, &[], &[0, number]), text);
+        for capacity in [2, 8, 9, 10] {
+            let cut: String = format!("junk{text}").chars().take(capacity as usize).collect();
+            assert_eq!(built(|f| &f.whole, capacity, &[], &[4.min(i64::from(capacity)), number]), cut);
+        }
+    }
+}
+
+/// Long texts and the last bytes of the memory are other ways through the same bodies.
+#[test]
+fn every_length_up_to_the_end_of_the_memory() {
+    for length in 0..80usize {
+        for room in [0, 1, 7, 40] {
+            let source: Vec<u8> = (0..length).map(|n| b'a' + (n % 23) as u8).collect();
+            // Destination, source, and what lies behind it.
+            let at = length as u32 + 1;
+            let mut mem = [vec![b'#'; length + 1], source.clone(), vec![0], vec![b'x'; room]].concat();
+            let texts = [Text { at: 0, capacity: length as u32 }, Text { at, capacity: length as u32 }];
+            assert_eq!((STRING.len.eval)(&mut mem, &texts[1..], &[]), length as u64);
+            assert_eq!((STRING.put.eval)(&mut mem, &texts, &[0]), length as u64);
+            assert_eq!((&mem[..length], mem[length]), (source.as_slice(), 0));
+            assert_eq!((STRING.compare.eval)(&mut mem, &texts, &[]), 0);
+            assert_eq!((STRING.find_unit.eval)(&mut mem, &texts[1..], &[u64::from(b'#'), 0]), 0);
+            for changed in 0..length {
+                mem[changed] = b'#';
+                assert_eq!((STRING.compare.eval)(&mut mem, &texts, &[]) as i64, -1);
+                assert_eq!((STRING.find_unit.eval)(&mut mem, &texts[..1], &[u64::from(b'#'), 0]), changed as u64 + 1);
+                mem[changed] = source[changed];
+            }
+            // A part of it over itself.
+            for from in 0..=length {
+                let (before, mut mem) = (&mem[at as usize..], mem.clone());
+                (STRING.delete.eval)(&mut mem, &[texts[0], texts[0]], &[from as u64, 1]);
+                assert_eq!(mem[..length - from], source[from..]);
+                assert_eq!((mem[length - from], &mem[length + 1..]), (0, before));
+            }
+        }
+    }
 }
 
 #[test]
@@ -171,7 +244,7 @@ fn nothing_leaves_the_region() {
     };
     for _ in 0..40_000 {
         let set = TextFns::of(random(2) == 1);
-        let f = set.all()[random(13) as usize];
+        let f = set.all()[random(set.all().len() as u64) as usize];
         let mut mem: Vec<u8> = (0..random(64)).map(|_| b"\0\0ab1.-"[random(7) as usize]).collect();
         let before = mem.clone();
         let texts: Vec<Text> =

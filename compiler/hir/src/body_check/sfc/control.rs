@@ -11,6 +11,7 @@ use crate::init::Init;
 use crate::types::Types;
 use index_vec::IndexVec;
 use plcc_diag::Span;
+use rustc_hash::FxHashSet;
 
 /// By step: flags of the action controls that must be called when it becomes active.
 pub(super) type Wakes = IndexVec<StepId, Vec<Place>>;
@@ -35,7 +36,7 @@ pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, steps: &Flag
             out.push(assign(place.clone(), running.clone(), place.span));
         }
     }
-    bodies(w, chart, &users, &running, groups, steps, out);
+    bodies(w, chart, &users, &running, groups, (steps, &mut awake.names), out);
     awake.wakes
 }
 
@@ -47,6 +48,23 @@ struct Awake {
     next: usize,
     places: Vec<Place>,
     wakes: Wakes,
+    names: Names,
+}
+
+/// Names of hidden variables: those of the actions and steps they belong to, so that what a warm start keeps finds them again
+/// when the chart was edited.
+#[derive(Default)]
+struct Names(FxHashSet<String>);
+
+impl Names {
+    /// The name, with a number behind it if it was given before.
+    fn of(&mut self, text: &str) -> String {
+        let plain: String = text.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+        let numbered = (2..).map(|n| format!("{plain}__{n}"));
+        let name = std::iter::once(plain.clone()).chain(numbered).find(|name| !self.0.contains(name)).unwrap_or(plain);
+        self.0.insert(name.clone());
+        name
+    }
 }
 
 impl Awake {
@@ -59,7 +77,7 @@ impl Awake {
             places = w.flags("awake", bytes, init, chart.span.before());
         }
         let wakes = chart.steps.iter().map(|_| Vec::new()).collect();
-        Self { flags: Flags::new(places.clone(), bytes), next: 0, places, wakes }
+        Self { flags: Flags::new(places.clone(), bytes), next: 0, places, wakes, names: Names::default() }
     }
 
     fn take(&mut self, users: &[User]) -> (usize, Place) {
@@ -101,15 +119,17 @@ fn control(
     if is_wire(users) {
         return any(&flags(Qualifier::N), span);
     }
-    let name = format!("a{}", id.index() + 1);
+    let name = awake.names.of(&format!("action {}", chart.actions[id].name));
     let control = w.instance("ACTION_CONTROL", &name, span);
     let reset = any(&flags(Qualifier::R), span);
     let mut body = Vec::new();
     let mut parts = Vec::new();
     let mut stored = vec![w.output(&control, "Stored")];
-    for (n, user) in users.iter().enumerate() {
+    for user in users {
         let Some(block) = part(user.association.qualifier) else { continue };
-        let part = w.instance(block, &format!("{name}p{}", n + 1), user.association.span);
+        let part =
+            awake.names.of(&format!("{name} {} {}", chart.steps[user.step].name, user.association.qualifier.text()));
+        let part = w.instance(block, &part, user.association.span);
         let mut inputs = vec![("X", active(chart, user.step))];
         if matches!(user.association.qualifier, Qualifier::SD | Qualifier::DS | Qualifier::SL) {
             inputs.push(("R", reset.clone()));
@@ -170,7 +190,7 @@ fn bodies(
     users: &[Vec<User>],
     running: &[Expr],
     groups: &Groups,
-    steps: &Flags,
+    (steps, names): (&Flags, &mut Names),
     out: &mut Vec<Stmt>,
 ) {
     let final_scan = w.c.cx.defs.pous[w.owner].profile == Profile::Codesys;
@@ -185,7 +205,7 @@ fn bodies(
             now.push(group, [when(running.clone(), vec![run()], span)]);
             continue;
         }
-        let name = format!("a{}ran", id.index() + 1);
+        let name = names.of(&format!("action {} ran", action.name));
         let ran: Place = variable(w.hidden(&name, Types::elem(BOOL), span), Types::elem(BOOL), span);
         let ended = all(&[read(ran.clone()), not(running.clone())], span);
         last.push(group, [when(ended, vec![assign(ran.clone(), constant(0, BOOL, span), span), run()], span)]);

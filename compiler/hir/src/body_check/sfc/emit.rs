@@ -35,12 +35,13 @@ impl Writer<'_, '_, '_> {
         var
     }
 
-    /// Hidden BOOLs that lie side by side.
+    /// Hidden BOOLs that lie side by side; a warm start does not keep them.
     pub fn flags(&mut self, name: &str, count: usize, init: Init, span: Span) -> Vec<Place> {
         let elem = Types::elem(BOOL);
         let ty = self.c.cx.defs.types.intern(Type::Array { dims: vec![(0, count as i64 - 1)], elem });
         let var = self.hidden(name, ty, span);
         self.c.cx.defs.vars[var].init = init;
+        self.c.cx.defs.vars[var].non_retain = true;
         let text = self.c.cx.defs.vars[var].name.to_string();
         let flag = |n: usize| Place {
             steps: vec![Step::Index(vec![constant(n as u64, Elem::Lint, span)], text.clone())],

@@ -41,6 +41,8 @@ impl Groups {
         let counters = (0..count).map(|n| {
             let var = w.hidden(&format!("g{}", n + 1), ty, span);
             w.c.cx.defs.vars[var].init = crate::init::Init::Scalar(AWAKE);
+            // A warm start may find another step active than those for which this counted.
+            w.c.cx.defs.vars[var].non_retain = true;
             variable(var, ty, span)
         });
         Self { counters: counters.collect() }
