@@ -2,6 +2,7 @@
 //! programs still mean the same is tested for each of them as well.
 
 mod divide;
+mod lanes;
 mod ranges;
 mod unroll;
 

@@ -7,6 +7,7 @@
 
 mod generate;
 mod il;
+mod lanes;
 mod loops;
 mod passes;
 mod texts;

@@ -1,7 +1,7 @@
 //! The optimiser: random ST and IL programs mean the same before and after every pass. A program that does not is made small
 //! and printed.
 
-use super::{deep, generate, il, loops, setting, shared_out, source};
+use super::{deep, generate, il, lanes, loops, setting, shared_out, source};
 use plcc_hir::Profile;
 use plcc_mir::ir::{Inst, Program};
 use plcc_mir::opt::{Pass, passes};
@@ -61,6 +61,28 @@ fn passes_keep_the_meaning_of_loops() {
     println!("{ran} of {count} nests of loops, {faults} of them with a fault");
     assert!(ran > count / 2, "{ran} of {count} compile");
     assert!(count < 60 || (faults > 0 && faults < ran), "{faults} faults");
+}
+
+#[test]
+fn passes_keep_the_meaning_of_neighbours() {
+    let (count, first) = (setting("RANDOM_PASSES", 80) * 2, setting("RANDOM_SEED", 1) + 5_000_000);
+    let jams = shared_out(first..first + count, |seed| {
+        let text = lanes::program(seed);
+        assert!(!judge(seed, &text), "seed {seed} stops with a fault\n{text}");
+        let mut program = compile(&text, Profile::Strict).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        // Whether one of the rows with that name had something to do.
+        let mut jammed = false;
+        for pass in passes() {
+            let size = |p: &Program| p.funcs.iter().flat_map(|f| &f.blocks).map(|b| b.insts.len()).sum::<usize>();
+            let before = size(&program);
+            (pass.run)(&mut program);
+            jammed |= pass.name == "jam" && size(&program) > before;
+        }
+        jammed
+    });
+    let jams = jams.iter().filter(|jammed| **jammed).count() as u64;
+    println!("{jams} of {count} programs have passes side by side");
+    assert!(count < 60 || jams > count / 5, "{jams} of {count}");
 }
 
 #[test]

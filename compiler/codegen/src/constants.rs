@@ -1,6 +1,7 @@
 //! Stores of constants that lie side by side, as one: a call of a function block with constant inputs writes them all.
 
 use crate::func::Translator;
+use crate::packs::follows;
 use crate::place::memory;
 use cranelift_codegen::ir::{InstBuilder, types};
 use plcc_mir::ir::{Inst, Place, ValueId};
@@ -65,10 +66,4 @@ impl<'a> Translator<'a, '_> {
         bytes.truncate(length);
         Some((bytes, end))
     }
-}
-
-/// Whether a place lies so many bytes behind another one.
-fn follows(first: &Place, bytes: usize, place: &Place) -> bool {
-    let same = first.base == place.base && first.index == place.index;
-    same && first.bit.is_none() && place.bit.is_none() && place.offset == first.offset + bytes as i64
 }

@@ -2,9 +2,11 @@
 
 mod calls;
 mod exits;
+mod lanes;
 
 pub use calls::{rt_signature, text_signature};
 
+use crate::packs::Packs;
 use crate::place::memory;
 use crate::prim::{self, carrier, clif_type};
 use crate::shape::{Shape, signature};
@@ -64,7 +66,8 @@ pub fn translate(env: &Env, id: FuncId, context: &mut FunctionBuilderContext) ->
     let func = &env.program.funcs[id];
     let tree = Dominators::new(func);
     let b = FunctionBuilder::new(&mut out, context);
-    let mut translator = Translator::new(env, func, env.shapes[id], b);
+    let packs = if env.vectors { Packs::find(func, &tree) } else { Packs::default() };
+    let mut translator = Translator::new(env, func, env.shapes[id], packs, b);
     translator.region_bytes = env.program.part_of_func(id).bytes;
     translator.entry(!tree.preds[BlockId::from_usize(0)].is_empty(), &tree.order);
     for block in &tree.order {
@@ -135,6 +138,11 @@ pub struct Translator<'a, 'f> {
     /// See [`signed_uses`].
     signed: IndexVec<ValueId, bool>,
     /// Of values of 16 bits that were loaded: the same in 64 bits.
+    packs: Packs,
+    /// Registers full of values, by pack.
+    packed: FxHashMap<usize, Value>,
+    /// Registers full of one value.
+    fillings: FxHashMap<ValueId, Value>,
     extended: FxHashMap<ValueId, Extended>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
@@ -148,7 +156,7 @@ pub struct Translator<'a, 'f> {
 }
 
 impl<'a, 'f> Translator<'a, 'f> {
-    fn new(env: &'a Env<'a>, func: &'a Func, shape: Shape, mut b: FunctionBuilder<'f>) -> Self {
+    fn new(env: &'a Env<'a>, func: &'a Func, shape: Shape, packs: Packs, mut b: FunctionBuilder<'f>) -> Self {
         let start = b.create_block();
         b.append_block_params_for_function_params(start);
         b.switch_to_block(start);
@@ -168,6 +176,9 @@ impl<'a, 'f> Translator<'a, 'f> {
             constants: IndexVec::from_vec(vec![None; func.values.len()]),
             signed: signed_uses(func),
             extended: FxHashMap::default(),
+            packs,
+            packed: FxHashMap::default(),
+            fillings: FxHashMap::default(),
             blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
             callees: FxHashMap::default(),
             rt_callees: FxHashMap::default(),
@@ -196,8 +207,17 @@ impl<'a, 'f> Translator<'a, 'f> {
             let block = self.b.create_block();
             self.blocks[*id] = Some(block);
             for param in &self.func.blocks[*id].params {
-                let value = self.b.append_block_param(block, carrier(self.func.values[*param]));
-                self.values[*param] = Some(value);
+                match self.packs.lane(*param) {
+                    None => {
+                        let value = self.b.append_block_param(block, carrier(self.func.values[*param]));
+                        self.values[*param] = Some(value);
+                    }
+                    Some((number, 0)) => {
+                        let value = self.b.append_block_param(block, lanes::vector_type(self.func.values[*param]));
+                        self.packed.insert(number, value);
+                    }
+                    Some(_) => {}
+                }
             }
         }
         if entry_is_target {
@@ -225,8 +245,9 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.b.finalize(self.env.config);
     }
 
-    fn defined(&self, id: ValueId) -> Value {
-        self.values[id].unwrap_or_else(|| plcc_diag::bug!("v{} of `{}` has no value", id.index(), self.func.name))
+    fn defined(&mut self, id: ValueId) -> Value {
+        let value = self.values[id].or_else(|| self.out_of_lanes(id));
+        value.unwrap_or_else(|| plcc_diag::bug!("v{} of `{}` has no value", id.index(), self.func.name))
     }
 
     /// A value in the type of its representation.
@@ -269,7 +290,15 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn args(&mut self, target: &Target) -> Vec<BlockArg> {
-        target.args.iter().map(|v| self.carried(*v).into()).collect()
+        let mut args = Vec::with_capacity(target.args.len());
+        for (arg, param) in target.args.iter().zip(&self.func.blocks[target.block].params) {
+            match self.packs.lane(*param) {
+                None => args.push(self.carried(*arg).into()),
+                Some((number, 0)) => args.push(self.given(number, target).into()),
+                Some(_) => {}
+            }
+        }
+        args
     }
 
     fn block(&mut self, id: BlockId) {
@@ -278,8 +307,15 @@ impl<'a, 'f> Translator<'a, 'f> {
         if self.b.current_block() != Some(here) {
             self.b.switch_to_block(here);
         }
+        for param in &block.params {
+            self.fill_if_wanted(*param);
+        }
         let mut n = 0;
         while n < block.insts.len() {
+            if self.as_pack(id, n) {
+                n += 1;
+                continue;
+            }
             match self.constant_run(&block.insts[n..]) {
                 Some(count) => n += count,
                 None => {
@@ -293,6 +329,13 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     pub(crate) fn inst(&mut self, inst: &'a Inst) {
+        self.alone(inst);
+        if let (Some(value), _) = inst.results() {
+            self.fill_if_wanted(value);
+        }
+    }
+
+    fn alone(&mut self, inst: &'a Inst) {
         let loc = match inst {
             Inst::Call { exit, .. } | Inst::Check { exit, .. } | Inst::Poll { exit } => {
                 SourceLoc::new(exit.source.raw())

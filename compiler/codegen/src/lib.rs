@@ -11,6 +11,7 @@ pub mod header;
 pub mod jit;
 mod module;
 pub mod object;
+mod packs;
 mod place;
 mod prim;
 mod shape;

@@ -4,6 +4,7 @@ pub mod build;
 pub mod dominators;
 pub mod interp;
 pub mod ir;
+pub mod lanes;
 pub mod layout;
 pub mod lower;
 mod operands;

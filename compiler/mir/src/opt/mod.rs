@@ -21,6 +21,7 @@ mod hoist;
 mod in_place;
 mod induction;
 mod inline;
+mod jam;
 mod loops;
 mod promote;
 mod proven;
@@ -67,6 +68,7 @@ pub fn passes() -> &'static [Pass] {
     // What loops leave behind: functions without loops have seen it before.
     const LOOP_FOLD: Pass = Pass { name: "fold", run: |p| each_with_loops(p, |f, _| fold_and_clean(f)) };
     const LOOP_FORWARD: Pass = Pass { name: "forward", run: |p| each_with_loops(p, forward::run) };
+    const JAM: Pass = Pass { name: "jam", run: |p| with_facts_where(p, jam::may_help, jam::run) };
     const LOOP_DEAD_STORES: Pass = Pass { name: "dead_stores", run: |p| each_with_loops(p, dead_stores::run) };
     #[rustfmt::skip]
     const PASSES: &[Pass] = &[
@@ -83,7 +85,10 @@ pub fn passes() -> &'static [Pass] {
         RANGES, FOLD, HOIST, LOOP_FORWARD, LOOP_DEAD_STORES, LOOP_FOLD,
         // Counters first: of a loop that was repeated they are not seen any more.
         SELECT, FOLD, INDUCTION, FOLD,
+        // Of small nests only the outer loops are left after the next row.
+        JAM,
         Pass { name: "unroll", run: |p| each(p, unroll::run) }, LOOP_FOLD, FORWARD, COPIES, TEXTS, DEAD_STORES, FOLD,
+        JAM,
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, FOLD, INDUCTION, LOOP_FOLD, HOIST,

@@ -136,8 +136,14 @@ fn only_exit(func: &Func, loops: &Loops, n: usize, blocks: &[BlockId]) -> Option
     }
 }
 
+/// Puts so many passes of a loop in front of it. The blocks are in reverse post-order, the header first; there are no polls.
+pub fn peel(func: &mut Func, header: BlockId, blocks: &[BlockId], test: BlockId, entries: Vec<BlockId>, passes: usize) {
+    let plan = Plan { header, blocks: blocks.to_vec(), size: 0, test, entries, before: passes, repeated: 1 };
+    plan.carry_out(func);
+}
+
 /// How often the header runs for one entry.
-fn count(
+pub fn count(
     func: &Func,
     facts: &Facts,
     loops: &Loops,
