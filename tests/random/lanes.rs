@@ -22,7 +22,7 @@ struct Lanes {
 pub fn program(seed: u64) -> String {
     let mut rng = fastrand::Rng::with_seed(seed);
     let ty = ["REAL", "LREAL", "LREAL", "REAL", "DINT", "LINT", "DWORD"][rng.usize(0..7)];
-    let (tame, row, rows, length) = (rng.bool(), rng.u32(3..21), rng.u32(2..7), rng.u32(8..44));
+    let (tame, row, rows, length) = (rng.bool(), rng.u32(3..14), rng.u32(2..6), rng.u32(8..38));
     let mut lanes = Lanes { rng, out: String::new(), ty, tame, row, rows, length };
     lanes.declarations();
     for _ in 0..lanes.rng.usize(1..4) {
@@ -48,7 +48,7 @@ impl Lanes {
 
     fn declarations(&mut self) {
         let (ty, row, rows, length) = (self.ty, self.row, self.rows, self.length);
-        let counter = if self.rng.bool() { "INT" } else { "DINT" };
+        let counter = ["INT", "LINT", "LINT"][self.rng.usize(0..3)];
         let _ = write!(
             self.out,
             "PROGRAM Main\nVAR\n  x, y, z : ARRAY [0..{length}] OF {ty};\n  \
