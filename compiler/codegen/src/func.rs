@@ -137,12 +137,13 @@ pub struct Translator<'a, 'f> {
     pub(crate) constants: IndexVec<ValueId, Option<u64>>,
     /// See [`signed_uses`].
     signed: IndexVec<ValueId, bool>,
-    /// Of values of 16 bits that were loaded: the same in 64 bits.
+    /// What is done for several values at once.
     packs: Packs,
     /// Registers full of values, by pack.
     packed: FxHashMap<usize, Value>,
     /// Registers full of one value.
     fillings: FxHashMap<ValueId, Value>,
+    /// Of values of 16 bits that were loaded: the same in 64 bits.
     extended: FxHashMap<ValueId, Extended>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
