@@ -204,6 +204,15 @@ pub fn accepts(op: Op, elem: Elem) -> bool {
     }
 }
 
+/// Whether [`emit`] checks an operand of `op` on `elem`: a divisor, the count of a shift.
+pub fn may_fault(op: Op, elem: Elem) -> bool {
+    match op {
+        Op::Div | Op::Mod | Op::TimeDiv => !elem.is_real(),
+        Op::Shl | Op::Shr | Op::Rol | Op::Ror => true,
+        _ => false,
+    }
+}
+
 /// The operator applied to `args`; the caller has asked [`accepts`].
 pub fn emit(op: Op, elem: Elem, args: &[Val], e: &mut dyn Emit) -> Val {
     let repr = elem.repr();

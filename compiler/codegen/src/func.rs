@@ -140,7 +140,7 @@ pub struct Translator<'a, 'f> {
     /// What is done for several values at once.
     packs: Packs,
     /// Registers full of values, by pack.
-    packed: FxHashMap<usize, Value>,
+    vectors: FxHashMap<usize, Value>,
     /// Registers full of one value.
     fillings: FxHashMap<ValueId, Value>,
     /// Of values of 16 bits that were loaded: the same in 64 bits.
@@ -178,7 +178,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             signed: signed_uses(func),
             extended: FxHashMap::default(),
             packs,
-            packed: FxHashMap::default(),
+            vectors: FxHashMap::default(),
             fillings: FxHashMap::default(),
             blocks: IndexVec::from_vec(vec![None; func.blocks.len()]),
             callees: FxHashMap::default(),
@@ -215,7 +215,7 @@ impl<'a, 'f> Translator<'a, 'f> {
                     }
                     Some((number, 0)) => {
                         let value = self.b.append_block_param(block, lanes::vector_type(self.func.values[*param]));
-                        self.packed.insert(number, value);
+                        self.vectors.insert(number, value);
                     }
                     Some(_) => {}
                 }
@@ -415,10 +415,14 @@ impl<'a, 'f> Translator<'a, 'f> {
                 let args = [self.value(args[0]), self.carried(args[1]), self.carried(args[2])];
                 prim::emit(&mut self.b, op, repr, &args)
             }
-            (PrimOp::Sext(to) | PrimOp::Zext(to), Repr::I16) if self.extended(args[0], op).is_some() => {
-                let Some(wide) = self.extended(args[0], op) else { plcc_diag::bug!("no extended value") };
-                if to == Repr::I64 { wide } else { self.b.ins().ireduce(clif_type(to), wide) }
-            }
+            (PrimOp::Sext(to) | PrimOp::Zext(to), Repr::I16) => match self.extended(args[0], op) {
+                Some(wide) if to == Repr::I64 => wide,
+                Some(wide) => self.b.ins().ireduce(clif_type(to), wide),
+                None => {
+                    let value = self.value(args[0]);
+                    prim::emit(&mut self.b, op, repr, &[value])
+                }
+            },
             (PrimOp::Wrap(Repr::I16), Repr::I32) => self.value(args[0]),
             (PrimOp::Wrap(Repr::I16), Repr::I64) => {
                 let value = self.value(args[0]);

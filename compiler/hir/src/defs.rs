@@ -181,7 +181,7 @@ pub struct StructDef {
     pub union: bool,
     /// In order of declaration.
     pub fields: Vec<Field>,
-    /// It is the type of a step: its first field lies beside those of the other steps of its chart.
+    /// It is the type of a step: its [flag](StepFlag::FIELD) lies beside those of the other steps of its chart.
     pub flag: Option<StepFlag>,
     /// Where.
     pub span: Span,
@@ -195,6 +195,11 @@ pub struct StepFlag {
     pub index: u32,
     /// How many the chart has.
     pub steps: u32,
+}
+
+impl StepFlag {
+    /// The field of the structure of a step that is its flag.
+    pub const FIELD: u32 = 0;
 }
 
 /// A component of a structure.

@@ -5,7 +5,7 @@
 //! Sizes are 64-bit and saturate, so that no declaration can overflow them; the layout refuses what is too large.
 
 use crate::cx::elem_of;
-use crate::{Defs, Init, PouId, PouKind, Section, StructId, Type, TypeId, Var, VarId};
+use crate::{Defs, Init, PouId, PouKind, Section, StepFlag, StructId, Type, TypeId, Var, VarId};
 use index_vec::IndexVec;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::prim::Repr;
@@ -190,7 +190,7 @@ impl Shapes {
         let mut offsets = Vec::with_capacity(def.fields.len());
         for (n, field) in def.fields.iter().enumerate() {
             let part = self.work_out(defs, field.ty);
-            if def.flag.is_some() && n == 0 {
+            if def.flag.is_some() && n == StepFlag::FIELD as usize {
                 // Where it lies is known when the size of the rest is.
                 offsets.push(0);
                 shape.merge(part);
@@ -206,7 +206,7 @@ impl Shapes {
         let mut shape = shape.padded();
         if let Some(flag) = def.flag {
             let (index, steps) = (u64::from(flag.index), u64::from(flag.steps));
-            offsets[0] = (steps - index) * shape.bytes + index;
+            offsets[StepFlag::FIELD as usize] = (steps - index) * shape.bytes + index;
             if index + 1 == steps {
                 // Room for all of them, and words of flags end in it.
                 shape.bytes += steps.next_multiple_of(FLAGS_AT_ONCE);

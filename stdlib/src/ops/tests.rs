@@ -88,6 +88,20 @@ fn without_checks_division_by_zero_gives_zero() {
 }
 
 #[test]
+fn what_may_fault_is_what_checks() {
+    for op in ALL {
+        for elem in elem::ALL.into_iter().filter(|elem| accepts(op, *elem)) {
+            // Zero divisors and negative counts, whichever operand it is.
+            let faults = [0, u64::MAX].iter().any(|raw| {
+                let args: Vec<u64> = (0..op.arity()).map(|n| raw & op.operand(elem, n).mask()).collect();
+                run(op, elem, &args).1.is_some()
+            });
+            assert_eq!(faults, may_fault(op, elem), "{op:?} {elem:?}");
+        }
+    }
+}
+
+#[test]
 fn comparisons_order_by_type() {
     for (elem, less) in [(Sint, true), (Usint, false), (Byte, false), (Time, true), (Dt, true)] {
         let minus_one = elem.repr().mask();

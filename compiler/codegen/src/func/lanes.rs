@@ -4,6 +4,7 @@ use super::*;
 use crate::packs::{Operand, Pack, Work};
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{Endianness, MemFlagsData, Type};
+use plcc_mir::lanes::WIDTH;
 
 /// The type of a register full of values.
 pub(super) fn vector_type(repr: Repr) -> Type {
@@ -25,7 +26,7 @@ impl<'a> Translator<'a, '_> {
             self.b.set_srcloc(SourceLoc::default());
             let pack = self.packs.pack(number).clone();
             if let Some(value) = self.pack(&pack) {
-                self.packed.insert(number, value);
+                self.vectors.insert(number, value);
             }
         }
         true
@@ -68,7 +69,7 @@ impl<'a> Translator<'a, '_> {
 
     fn lanes_of(&mut self, operand: &Operand, repr: Repr) -> Value {
         match operand {
-            Operand::Pack(number) => match self.packed.get(number) {
+            Operand::Pack(number) => match self.vectors.get(number) {
                 Some(value) => *value,
                 None => plcc_diag::bug!("pack {number} of `{}` has no value", self.func.name),
             },
@@ -94,7 +95,7 @@ impl<'a> Translator<'a, '_> {
     fn fill(&mut self, id: ValueId) -> Value {
         let repr = self.func.values[id];
         if let Some(raw) = self.constants[id] {
-            return self.constant_lanes(repr, &vec![raw; 16 / repr.bytes() as usize]);
+            return self.constant_lanes(repr, &vec![raw; WIDTH / repr.bytes() as usize]);
         }
         let value = self.value(id);
         self.b.ins().splat(vector_type(repr), value)
@@ -111,7 +112,7 @@ impl<'a> Translator<'a, '_> {
     /// One value out of a register.
     pub(super) fn out_of_lanes(&mut self, id: ValueId) -> Option<Value> {
         let (number, lane) = self.packs.lane(id)?;
-        let vector = *self.packed.get(&number)?;
+        let vector = *self.vectors.get(&number)?;
         Some(self.b.ins().extractlane(vector, lane as u8))
     }
 

@@ -18,7 +18,7 @@ pub(crate) mod field {
     use plcc_stdlib::elem::Elem;
 
     /// Active.
-    pub const X: u32 = 0;
+    pub const X: u32 = crate::defs::StepFlag::FIELD;
     /// It was activated while it was active: the runtime looks for its name.
     pub const TWICE: u32 = 1;
     /// For how long.

@@ -9,7 +9,7 @@ use crate::layout::{Layout, Slot};
 use plcc_diag::bug;
 use plcc_hir::app::Resource;
 use plcc_hir::elem_of;
-use plcc_hir::{Defs, Init, ReferenceId, Section, Type, TypeId, Var, VarId};
+use plcc_hir::{Defs, Init, ReferenceId, Section, StepFlag, Type, TypeId, Var, VarId};
 use std::collections::BTreeMap;
 
 /// The register value with which a scalar starts; `None` for what is no scalar.
@@ -155,11 +155,11 @@ fn explicit(init: &Init, count: usize) -> Vec<Option<&Init>> {
 }
 
 /// Of an initial step: how far behind its first byte its flag lies. Nothing else of a step has an initial value, and the flag
-/// lies outside of its variable ([`StepFlag`](plcc_hir::StepFlag)).
+/// lies outside of its variable ([`StepFlag`]).
 fn flag(defs: &Defs, layout: &Layout, var: &Var) -> Option<u32> {
     match &defs.types[var.ty] {
         Type::Struct(id) if defs.structs[*id].flag.is_some() && !fields(&var.init).is_empty() => {
-            Some(layout.field(*id, 0))
+            Some(layout.field(*id, StepFlag::FIELD))
         }
         _ => None,
     }

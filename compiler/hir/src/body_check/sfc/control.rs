@@ -17,7 +17,7 @@ use rustc_hash::FxHashSet;
 pub(super) type Wakes = IndexVec<StepId, Vec<Place>>;
 
 /// The statements of steps (2) and (3) of the evolution (\[F2\]).
-pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, steps: &Flags, out: &mut Vec<Stmt>) -> Wakes {
+pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, out: &mut Vec<Stmt>) -> Wakes {
     let mut users: Vec<Vec<User>> = chart.actions.iter().map(|_| Vec::new()).collect();
     for (step, s) in chart.steps.iter_enumerated() {
         for association in &s.associations {
@@ -36,7 +36,7 @@ pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, steps: &Flag
             out.push(assign(place.clone(), running.clone(), place.span));
         }
     }
-    bodies(w, chart, &users, &running, groups, (steps, &mut awake.names), out);
+    bodies(w, chart, &users, &running, groups, &mut awake.names, out);
     awake.wakes
 }
 
@@ -46,7 +46,6 @@ struct Awake {
     flags: Flags,
     /// The next one that is free.
     next: usize,
-    places: Vec<Place>,
     wakes: Wakes,
     names: Names,
 }
@@ -69,7 +68,7 @@ impl Names {
 
 impl Awake {
     fn new(w: &mut Writer, chart: &Chart, controls: usize) -> Self {
-        let bytes = controls.next_multiple_of(4);
+        let bytes = Flags::room(controls);
         let mut places = Vec::new();
         if controls > 0 {
             // In the first call all are looked at.
@@ -77,13 +76,13 @@ impl Awake {
             places = w.flags("awake", bytes, init, chart.span.before());
         }
         let wakes = chart.steps.iter().map(|_| Vec::new()).collect();
-        Self { flags: Flags::new(places.clone(), bytes), next: 0, places, wakes, names: Names::default() }
+        Self { flags: Flags::new(places, bytes), next: 0, wakes, names: Names::default() }
     }
 
     fn take(&mut self, users: &[User]) -> (usize, Place) {
         let number = self.next;
         self.next += 1;
-        let place = self.places[number].clone();
+        let place = self.flags.place(number).clone();
         for user in users {
             self.wakes[user.step].push(place.clone());
         }
@@ -190,7 +189,7 @@ fn bodies(
     users: &[Vec<User>],
     running: &[Expr],
     groups: &Groups,
-    (steps, names): (&Flags, &mut Names),
+    names: &mut Names,
     out: &mut Vec<Stmt>,
 ) {
     let final_scan = w.c.cx.defs.pous[w.owner].profile == Profile::Codesys;
@@ -211,8 +210,9 @@ fn bodies(
         last.push(group, [when(ended, vec![assign(ran.clone(), constant(0, BOOL, span), span), run()], span)]);
         now.push(group, [when(running.clone(), vec![assign(ran, constant(1, BOOL, span), span), run()], span)]);
     }
-    last.finish(groups, steps, out);
-    now.finish(groups, steps, out);
+    let no_flags = Flags::default();
+    last.finish(groups, &no_flags, out);
+    now.finish(groups, &no_flags, out);
 }
 
 /// Where an action is named first.

@@ -15,6 +15,7 @@ use index_vec::IndexVec;
 use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
 use plcc_stdlib::ops::Op;
+use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
 
 /// What the evolution of a chart keeps beside its steps.
@@ -42,31 +43,35 @@ pub(super) fn evaluate(
     late: &Late,
     out: &mut Vec<Stmt>,
 ) {
-    let mut refreshed: IndexVec<StepId, bool> = late.iter().map(|late| !late).collect();
-    let mut items: Vec<(Option<StepId>, Vec<Stmt>, Span)> = Vec::new();
-    for Set { transitions, shared } in order::sets(&w.c.cx.defs, chart) {
-        let Some(first) = transitions.first().map(|t| &chart.transitions[*t]) else { continue };
+    let sets = order::sets(&w.c.cx.defs, chart);
+    let shared: FxHashSet<StepId> = sets.iter().filter_map(|set| set.shared).collect();
+    // Steps without transitions of their own, where their neighbours are.
+    let mut others = chart.steps.indices().filter(|step| late[*step] && !shared.contains(step)).peekable();
+    let mut grouped = Grouped::default();
+    let refresh_only = |step: StepId, grouped: &mut Grouped| {
+        let body = refresh(chart, state, step, groups);
+        grouped.push_flagged(groups.of(step), step.index(), body, chart.steps[step].span);
+    };
+    for Set { transitions, shared } in sets {
+        while let Some(step) = others.next_if(|other| shared.is_some_and(|step| *other < step)) {
+            refresh_only(step, &mut grouped);
+        }
         let mut body = Vec::new();
-        if let Some(step) = shared.filter(|s| !std::mem::replace(&mut refreshed[*s], true)) {
+        if let Some(step) = shared.filter(|step| late[*step]) {
             body = refresh(chart, state, step, groups);
         }
         for id in &transitions {
             condition(w, chart, state, *id, shared, &mut body);
         }
         choose(w, chart, state, &transitions, &mut body);
-        items.push((shared, body, first.span));
-    }
-    for (step, _) in refreshed.iter_enumerated().filter(|(_, done)| !**done) {
-        let at = items.iter().position(|item| item.0.is_some_and(|s| s > step)).unwrap_or(items.len());
-        items.insert(at, (Some(step), refresh(chart, state, step, groups), chart.steps[step].span));
-    }
-    let mut grouped = Grouped::default();
-    for (step, body, span) in items {
-        match step {
-            Some(step) => grouped.push_flagged(groups.of(step), step.index(), body, span),
-            None => grouped.push(None, body),
+        match (shared, transitions.first()) {
+            (Some(step), Some(first)) => {
+                grouped.push_flagged(groups.of(step), step.index(), body, chart.transitions[*first].span);
+            }
+            _ => grouped.push(None, body),
         }
     }
+    others.for_each(|step| refresh_only(step, &mut grouped));
     grouped.finish(groups, steps, out);
 }
 

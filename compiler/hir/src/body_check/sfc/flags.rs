@@ -5,6 +5,7 @@
 
 use super::emit::*;
 use crate::body::{Expr, Place, Step, Stmt};
+use crate::shape::FLAGS_AT_ONCE;
 use crate::types::Types;
 use plcc_diag::Span;
 use plcc_stdlib::elem::Elem;
@@ -17,6 +18,7 @@ pub(super) struct Item {
 }
 
 /// BOOLs in their order in memory, a byte each.
+#[derive(Default)]
 pub(super) struct Flags {
     flags: Vec<Place>,
     /// How many bytes from the first one on may be read; those behind the flags are 0.
@@ -24,13 +26,22 @@ pub(super) struct Flags {
 }
 
 /// Words of flags, and how many each holds.
-const WORDS: [(Elem, usize); 2] = [(Elem::Lword, 8), (Elem::Dword, 4)];
+const WORDS: [(Elem, usize); 2] = [(Elem::Lword, FLAGS_AT_ONCE as usize), (Elem::Dword, 4)];
 /// With fewer statements the test of a word saves nothing.
 const WORTH: usize = 3;
 
 impl Flags {
     pub fn new(flags: Vec<Place>, bytes: usize) -> Self {
         Self { flags, bytes }
+    }
+
+    /// How many bytes flags of their own take, so that each lies in a word.
+    pub fn room(count: usize) -> usize {
+        count.next_multiple_of(WORDS[1].1)
+    }
+
+    pub fn place(&self, number: usize) -> &Place {
+        &self.flags[number]
     }
 
     /// Writes the statements; neighbours whose flags lie in one word stand in an IF over that word. No statement changes a

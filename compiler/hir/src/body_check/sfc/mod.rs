@@ -93,7 +93,7 @@ fn write(cx: &mut Cx, chart: &Chart, late: &Late) {
     let steps = Flags::new(steps.collect(), chart.steps.len().next_multiple_of(FLAGS_AT_ONCE as usize));
     let chosen = Flags::new(state.chosen.iter().cloned().collect(), chart.transitions.len());
     evolve::times(chart, &state, &groups, &steps, late, &mut stmts);
-    let wakes = control::write(&mut w, chart, &groups, &steps, &mut stmts);
+    let wakes = control::write(&mut w, chart, &groups, &mut stmts);
     evolve::evaluate(&mut w, chart, &state, &groups, &steps, late, &mut stmts);
     evolve::fire(chart, &state, &groups, &chosen, &wakes, &mut stmts);
     let temps = checker.temps;

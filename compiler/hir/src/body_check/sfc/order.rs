@@ -4,7 +4,7 @@
 use crate::body::{Expr, ExprKind, Place, Root, Step as PlaceStep};
 use crate::chart::{Chart, StepId, TransitionId};
 use crate::defs::{Defs, Section};
-use plcc_stdlib::ops::Op;
+use plcc_stdlib::ops;
 
 /// Transitions between which is chosen, and the step that stands for them.
 pub(super) struct Set {
@@ -34,14 +34,7 @@ fn silent(defs: &Defs, expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Const(_) | ExprKind::Temp(_) => true,
         ExprKind::Read(place) => plain(defs, place),
-        ExprKind::Op(op, elem, args) => {
-            let faults = match op {
-                Op::Div | Op::Mod | Op::TimeDiv => !elem.is_real(),
-                Op::Shl | Op::Shr | Op::Rol | Op::Ror => true,
-                _ => false,
-            };
-            !faults && args.iter().all(|a| silent(defs, a))
-        }
+        ExprKind::Op(op, elem, args) => !ops::may_fault(*op, *elem) && args.iter().all(|a| silent(defs, a)),
         ExprKind::AndThen(a, b) | ExprKind::OrElse(a, b) => silent(defs, a) && silent(defs, b),
         ExprKind::Convert(_, _, inner) | ExprKind::Retype(inner) => silent(defs, inner),
         _ => false,
