@@ -76,10 +76,10 @@ fn check(program: &Program, folder: &Path) -> Result<(), String> {
 /// Medians of a few lanes, a line a program: what one looks at while working on the compiler.
 fn brief(program: &Program, folder: &Path) -> Result<(), String> {
     let named = |e: String| format!("{}: {e}", program.name);
-    let mut lanes = Lanes::new(program, Choice::Few { linked: false }, 400, folder).map_err(named)?;
-    lanes.compare(400).map_err(named)?;
+    let plan = Plan { samples: 100, sample_ns: 10_000.0, stimulus: 20_000, cycles: 400, repeats: 1 };
+    let mut lanes = Lanes::new(program, Choice::Few { linked: false }, plan.stimulus, folder).map_err(named)?;
+    lanes.compare(plan.cycles).map_err(named)?;
     let mut running: Vec<_> = lanes.lanes.into_iter().map(|p| p.lane).collect();
-    let plan = Plan { samples: 100, sample_ns: 10_000.0, cycles: 400, repeats: 1 };
     let measured = measure(&mut running, &plan, Scale::calibrate()).map_err(|f| named(format!("{f:?}")))?;
     let reports = running.iter().zip(&measured.times).map(|(lane, times)| LaneReport::new(lane.name, times));
     let medians: Vec<(&str, f64)> =
@@ -235,7 +235,7 @@ fn markdown(report: &Report, charts: &Report, library: Option<ProgramReport>) ->
 }
 
 fn one(program: &Program, plan: &Plan, scale: Scale, folder: &Path) -> Result<ProgramReport, String> {
-    let mut lanes = Lanes::new(program, Choice::All, plan.cycles, folder)?;
+    let mut lanes = Lanes::new(program, Choice::All, plan.stimulus, folder)?;
     lanes.compare(plan.cycles)?;
     measured(program.name, program.what, lanes, plan, scale)
 }

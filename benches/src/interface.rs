@@ -111,13 +111,13 @@ fn side(names: &[String], image: &Image, resolver: &Resolver) -> Side {
 
 impl Side {
     /// Rows for the C struct, which begins at `offset`.
-    pub fn c_rows(&self, offset: usize, values: &[Vec<Vec<u8>>]) -> Rows {
+    pub fn c_rows(&self, offset: usize, values: &[u8]) -> Rows {
         let bytes = self.leaves.last().map_or(0, |l| l.c + l.bytes());
-        Rows { offset, bytes, table: Rc::new(table(bytes, values, |n| self.leaves[n].c)) }
+        Rows { offset, bytes, table: Rc::new(self.table(bytes, values, |leaf| leaf.c)) }
     }
 
     /// Rows for the region; `like` is shared if it is the same.
-    pub fn region_rows(&self, image: &Image, values: &[Vec<Vec<u8>>], like: &Rows) -> Rows {
+    pub fn region_rows(&self, image: &Image, values: &[u8], like: &Rows) -> Rows {
         let start = self.leaves.iter().map(|l| l.region).min().unwrap_or(0);
         let end = self.leaves.iter().map(|l| l.region + l.bytes()).max().unwrap_or(0);
         // What lies between the inputs would be overwritten.
@@ -126,18 +126,23 @@ impl Side {
             inside(r.offset as usize) && !self.leaves.iter().any(|l| l.variable.eq_ignore_ascii_case(&r.name))
         });
         assert!(foreign.is_none(), "{foreign:?} lies between the inputs");
-        let table = table(end - start, values, |n| self.leaves[n].region - start);
+        let table = self.table(end - start, values, |leaf| leaf.region - start);
         let table = if *like.table == table { Rc::clone(&like.table) } else { Rc::new(table) };
         Rows { offset: start, bytes: end - start, table }
     }
-}
 
-fn table(bytes: usize, values: &[Vec<Vec<u8>>], place: impl Fn(usize) -> usize) -> Vec<u8> {
-    let mut table = vec![0; bytes * values.len()];
-    for (row, values) in table.chunks_exact_mut(bytes.max(1)).zip(values) {
-        for (n, value) in values.iter().enumerate() {
-            row[place(n)..][..value.len()].copy_from_slice(value);
+    /// Rows of so many bytes with each leaf in its place; `values` has them one behind the other.
+    fn table(&self, bytes: usize, values: &[u8], place: impl Fn(&Leaf) -> usize) -> Vec<u8> {
+        let packed: usize = self.leaves.iter().map(Leaf::bytes).sum();
+        let cycles = values.len() / packed.max(1);
+        let mut table = vec![0; bytes * cycles];
+        for (row, mut values) in table.chunks_exact_mut(bytes.max(1)).zip(values.chunks_exact(packed.max(1))) {
+            for leaf in &self.leaves {
+                let (value, rest) = values.split_at(leaf.bytes());
+                row[place(leaf)..][..value.len()].copy_from_slice(value);
+                values = rest;
+            }
         }
+        table
     }
-    table
 }

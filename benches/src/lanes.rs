@@ -94,8 +94,7 @@ impl Lanes {
         let front = Front::new(program.sources, Profile::Strict)?;
         let speed = front.compile("all", OptArg::Speed)?;
         let interface = Interface::new(&front, speed.image());
-        let mut stimulus = Stimulus::new(&interface.inputs.leaves, program.signals);
-        let values: Vec<_> = (0..rows).map(|_| stimulus.cycle()).collect();
+        let values = Stimulus::new(&interface.inputs.leaves, program.signals).cycles(rows);
         let like = interface.inputs.c_rows(0, &values);
         let of = |back: &Back| interface.inputs.region_rows(back.image(), &values, &like);
         let jit = speed.jit().0;
@@ -115,7 +114,7 @@ impl Lanes {
             out.passes_ms = none.passes_ms();
             out.compile_ms = compile_time::to_jit(program.sources, 5)?;
             for (prepared, back) in out.lanes.iter_mut().zip([&none, &speed]) {
-                prepared.operations = Some(operations(back, of(back), rows));
+                prepared.operations = Some(operations(back, of(back), rows.min(COUNTED)));
             }
             let back = front.compile("none", OptArg::None)?;
             out.ours(JIT_NONE_UNCHECKED, back.jit().0, &back, of(&back));
@@ -157,7 +156,7 @@ impl Lanes {
         program: &Program,
         choice: Choice,
         interface: &Interface,
-        values: &[Vec<Vec<u8>>],
+        values: &[u8],
         like: &Rows,
         folder: &Path,
     ) -> Result<(), String> {
@@ -183,7 +182,7 @@ impl Lanes {
         lane: &'static str,
         built: &Reference,
         interface: &Interface,
-        values: &[Vec<Vec<u8>>],
+        values: &[u8],
         like: &Rows,
     ) -> Result<(), String> {
         let (engine, shape) = built.load()?;
@@ -257,6 +256,9 @@ impl Lanes {
         self.outputs.leaves.len()
     }
 }
+
+/// Operations are counted in so many cycles.
+const COUNTED: u64 = 1000;
 
 /// Operations of the interpreter in a cycle, mean.
 fn operations(back: &Back, rows: Rows, cycles: u64) -> f64 {

@@ -58,42 +58,48 @@ impl Stimulus {
         Self { random, inputs }
     }
 
-    /// The values of the next cycle, by leaf, in the bytes of memory.
-    pub fn cycle(&mut self) -> Vec<Vec<u8>> {
+    /// Appends the values of the next cycle, leaf after leaf, in the bytes of memory.
+    fn cycle(&mut self, bytes: &mut Vec<u8>) {
         let Self { random, inputs } = self;
-        inputs
-            .iter_mut()
-            .map(|input| {
-                let p = random.f64();
-                match input.signal {
-                    Signal::Flips(share) if p < share => input.value = 1.0 - input.value,
-                    Signal::Pulses(share) => input.value = f64::from(u8::from(p < share)),
-                    Signal::Noise(low, high) => input.value = low + p * (high - low),
-                    Signal::Walk(low, high, step) => {
-                        input.value = (input.value + (2.0 * p - 1.0) * step).clamp(low, high);
-                    }
-                    Signal::Jumps(low, high, share) if p < share => input.value = low + random.f64() * (high - low),
-                    Signal::Texts(texts, share) if p < share => input.text = texts[random.usize(..texts.len())],
-                    _ => {}
+        for input in inputs {
+            let p = random.f64();
+            match input.signal {
+                Signal::Flips(share) if p < share => input.value = 1.0 - input.value,
+                Signal::Pulses(share) => input.value = f64::from(u8::from(p < share)),
+                Signal::Noise(low, high) => input.value = low + p * (high - low),
+                Signal::Walk(low, high, step) => {
+                    input.value = (input.value + (2.0 * p - 1.0) * step).clamp(low, high);
                 }
-                input.bytes()
-            })
-            .collect()
+                Signal::Jumps(low, high, share) if p < share => input.value = low + random.f64() * (high - low),
+                Signal::Texts(texts, share) if p < share => input.text = texts[random.usize(..texts.len())],
+                _ => {}
+            }
+            input.append(bytes);
+        }
+    }
+
+    /// The values of so many cycles, one after the other.
+    pub fn cycles(mut self, count: u64) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        (0..count).for_each(|_| self.cycle(&mut bytes));
+        bytes
     }
 }
 
 impl Moving {
-    fn bytes(&self) -> Vec<u8> {
+    fn append(&self, bytes: &mut Vec<u8>) {
         match self.kind {
             Kind::Text(capacity) => {
-                let mut bytes = self.text.as_bytes().to_vec();
-                assert!(bytes.len() <= capacity, "`{}` is too long", self.text);
-                bytes.resize(capacity + 1, 0);
-                bytes
+                assert!(self.text.len() <= capacity, "`{}` is too long", self.text);
+                let end = bytes.len() + capacity + 1;
+                bytes.extend(self.text.as_bytes());
+                bytes.resize(end, 0);
             }
-            Kind::Elem(Elem::Real) => (self.value as f32).to_le_bytes().to_vec(),
-            Kind::Elem(Elem::Lreal) => self.value.to_le_bytes().to_vec(),
-            Kind::Elem(elem) => (self.value.floor() as i64).to_le_bytes()[..elem.bytes() as usize].to_vec(),
+            Kind::Elem(Elem::Real) => bytes.extend((self.value as f32).to_le_bytes()),
+            Kind::Elem(Elem::Lreal) => bytes.extend(self.value.to_le_bytes()),
+            Kind::Elem(elem) => {
+                bytes.extend(&(self.value.floor() as i64).to_le_bytes()[..elem.bytes() as usize]);
+            }
         }
     }
 }

@@ -216,7 +216,7 @@ impl Bench {
         let lanes = engines.into_iter().map(lane).collect();
         Ok(Self {
             name: image.name.clone(),
-            plan: Plan { cycles: args.cycles, ..Plan::FULL },
+            plan: Plan { stimulus: args.cycles, cycles: args.cycles, ..Plan::FULL },
             lanes,
             first,
             code_bytes,

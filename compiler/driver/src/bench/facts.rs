@@ -30,12 +30,12 @@ pub fn load(when: &str) -> String {
 
 /// What is measured and how, one fact a line.
 pub fn method(plan: &Plan, scale: Scale) -> Vec<String> {
-    let Plan { samples, sample_ns, cycles, repeats } = plan;
+    let Plan { samples, sample_ns, stimulus, cycles, repeats } = plan;
     vec![
-        format!("Every lane runs the same {cycles} cycles from its initial values with the same inputs, on memory of its own. Inputs change in every cycle; they are copied into the memory of the lane, as from a process image."),
-        "Before anything is timed, all lanes run all cycles, and every output is compared after each of them, byte for byte.".into(),
+        format!("Every lane runs the same cycles from its initial values with the same inputs, on memory of its own. Inputs change in every cycle and repeat only after {stimulus} cycles, so that no processor knows from the last time how branches go; they are copied into the memory of the lane, as from a process image."),
+        format!("Before anything is timed, all lanes run the first {cycles} cycles, and every output is compared after each of them, byte for byte."),
         format!("*Typical cycle*: batches of cycles, with copying the inputs, as many as take the fastest lane {:.0} us; {samples} batches a lane, a batch of one lane after the same batch of the other, so that what the machine does meanwhile hits all. A batch gives its mean cycle, the batches give the median. Lanes that are 8 times slower and more (interpreters) are timed in shorter pieces of the same batch, or every batch would be interrupted.", sample_ns / 1000.0),
-        format!("*Slow cycles*: every cycle on its own, {repeats} times from the start, {} cycles of one lane and then of the next; without copying the inputs, less the {} ticks ({:.1} ns) that reading the counter takes. Cycles near that time are uncertain by some nanoseconds. A lane finds caches that others have used at the start of its turn; where turns begin differs in each repeat.", measure::SLICE, scale.overhead, scale.overhead as f64 * scale.ns),
+        format!("*Slow cycles*: each of these first cycles on its own, {repeats} times from the start, {} cycles of one lane and then of the next; without copying the inputs, less the {} ticks ({:.1} ns) that reading the counter takes. Cycles near that time are uncertain by some nanoseconds. A lane finds caches that others have used at the start of its turn; where turns begin differs in each repeat.", measure::SLICE, scale.overhead, scale.overhead as f64 * scale.ns),
         "What is the program's own (*undisturbed*) is separated from what the machine did (interrupts, other processes, the hypervisor) by taking of each cycle the least of its repeats. The longest cycle seen is shown, too; on a machine that does other things it says little.".into(),
         "Two copies of the same code at other addresses show how far two equal programs are apart: differences below that mean nothing.".into(),
     ]
