@@ -159,7 +159,7 @@ pub enum PrimOp {
     FLt,
     /// Less or equal; FALSE if one is NaN.
     FLe,
-    /// `Select(c: I8, a, b)`: a if c is not 0, else b. Any representation.
+    /// `Select(c: I8, a, b)`: a if the truth value c, 0 or 1, is 1, else b. Any representation.
     Select,
     /// Zero-extends to the wider representation given.
     Zext(Repr),

@@ -25,3 +25,31 @@ fn by_constants_none_is_left() {
         assert_eq!(got, left, "{body}\n{}", plcc_mir::print::program(&program, None));
     }
 }
+
+/// Whether a number is divisible by a power of two, its low bits say, whatever its sign.
+#[test]
+fn of_even_numbers_the_bits_are_asked() {
+    for (body, shifts) in [
+        ("i := i + 7; t := i MOD 2 = 0;", 0),
+        ("d := d + 7; t := d MOD -8 <> 0;", 0),
+        ("d := d + 7; t := d MOD 8 = 3;", 2),
+    ] {
+        let program = optimised("d : DINT; i : INT; t : BOOL;", body);
+        let got = count(&program, |inst| matches!(inst, Inst::Prim { op: PrimOp::ShrS | PrimOp::ShrU, .. }));
+        assert_eq!(got, shifts, "{body}\n{}", plcc_mir::print::program(&program, None));
+    }
+}
+
+/// One more if something holds is a sum.
+#[test]
+fn truths_are_counted() {
+    for (body, selects) in [
+        ("i := i * 3; IF t OR u THEN i := i + 1; END_IF;", 0),
+        ("d := d * 3; IF t AND NOT u THEN d := d - 1; END_IF;", 0),
+        ("d := d * 3; IF t THEN d := d + 2; END_IF;", 1),
+    ] {
+        let program = optimised("d : DINT; i : INT; t, u : BOOL;", body);
+        let got = count(&program, |inst| matches!(inst, Inst::Prim { op: PrimOp::Select, .. }));
+        assert_eq!(got, selects, "{body}\n{}", plcc_mir::print::program(&program, None));
+    }
+}

@@ -1,7 +1,6 @@
 //! Stores of constants that lie side by side, as one: a call of a function block with constant inputs writes them all.
 
 use crate::func::Translator;
-use crate::packs::follows;
 use crate::place::memory;
 use cranelift_codegen::ir::{InstBuilder, types};
 use plcc_mir::ir::{Inst, Place, ValueId};
@@ -44,7 +43,7 @@ impl<'a> Translator<'a, '_> {
         for (n, inst) in insts.iter().enumerate() {
             match inst {
                 Inst::Const { dst, raw } => made.push((*dst, *raw)),
-                Inst::Store { place, value } if follows(first, bytes.len(), place) => {
+                Inst::Store { place, value } if first.goes_on(bytes.len() as u32, place) => {
                     let new = made.iter().find(|(v, _)| v == value).map(|(_, raw)| *raw);
                     let Some(raw) = new.or(self.constants[*value]) else { break };
                     bytes.extend(&raw.to_le_bytes()[..self.func.values[*value].bytes() as usize]);

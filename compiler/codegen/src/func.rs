@@ -92,7 +92,7 @@ struct Tails {
     ways: usize,
 }
 
-/// A loaded value of 16 bits in 64.
+/// A loaded value of 8 or 16 bits in 64.
 #[derive(Debug, Clone, Copy)]
 enum Extended {
     /// With copies of its sign.
@@ -101,24 +101,44 @@ enum Extended {
     Zero(Value),
 }
 
-/// By value of 16 bits: somewhere it is extended with its sign, nowhere with zeros.
-fn signed_uses(func: &Func) -> IndexVec<ValueId, bool> {
-    let mut signed: IndexVec<ValueId, bool> = IndexVec::from_vec(vec![false; func.values.len()]);
-    let mut zero = Vec::new();
-    for block in &func.blocks {
-        for inst in &block.insts {
+/// How a narrow value is extended where that is done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extends {
+    /// Nowhere.
+    Never,
+    /// With its sign, nowhere with zeros; 16 bits only.
+    Signed,
+    /// With zeros, of 16 bits perhaps with the sign elsewhere.
+    Zero,
+}
+
+/// By value of 8 or 16 bits: how it is extended. A truth value that is made of others is extended if they are.
+fn extensions(func: &Func) -> IndexVec<ValueId, Extends> {
+    let mut uses: IndexVec<ValueId, Extends> = IndexVec::from_vec(vec![Extends::Never; func.values.len()]);
+    for block in func.blocks.iter().rev() {
+        if let Term::Switch { value, .. } = &block.term {
+            uses[*value] = Extends::Zero;
+        }
+        for inst in block.insts.iter().rev() {
             match inst {
-                Inst::Prim { op: PrimOp::Sext(_), repr: Repr::I16, args, .. } => signed[args[0]] = true,
-                Inst::Prim { op: PrimOp::Zext(_), repr: Repr::I16, args, .. } => zero.push(args[0]),
+                Inst::Prim { op: PrimOp::Sext(_), repr: Repr::I16, args, .. } if uses[args[0]] == Extends::Never => {
+                    uses[args[0]] = Extends::Signed;
+                }
+                Inst::Prim { op: PrimOp::Zext(_), repr: Repr::I8 | Repr::I16, args, .. } => {
+                    uses[args[0]] = Extends::Zero;
+                }
+                Inst::Prim { dst, op, repr: Repr::I8, args } if is_bitwise(*op) && uses[*dst] == Extends::Zero => {
+                    args.iter().for_each(|arg| uses[*arg] = Extends::Zero);
+                }
                 _ => {}
             }
         }
-        if let Term::Switch { value, .. } = &block.term {
-            zero.push(*value);
-        }
     }
-    zero.into_iter().for_each(|id| signed[id] = false);
-    signed
+    uses
+}
+
+fn is_bitwise(op: PrimOp) -> bool {
+    matches!(op, PrimOp::And | PrimOp::Or | PrimOp::Xor)
 }
 
 /// The walk over one function.
@@ -135,15 +155,17 @@ pub struct Translator<'a, 'f> {
     values: IndexVec<ValueId, Option<Value>>,
     /// Register values of constants.
     pub(crate) constants: IndexVec<ValueId, Option<u64>>,
-    /// See [`signed_uses`].
-    signed: IndexVec<ValueId, bool>,
+    /// Of integer constants: the block in which their value was made last.
+    made_in: IndexVec<ValueId, Option<ir::Block>>,
+    /// See [`extensions`].
+    extensions: IndexVec<ValueId, Extends>,
     /// What is done for several values at once.
     packs: Packs,
     /// Registers full of values, by pack.
     vectors: FxHashMap<usize, Value>,
     /// Registers full of one value.
     fillings: FxHashMap<ValueId, Value>,
-    /// Of values of 16 bits that were loaded: the same in 64 bits.
+    /// Of values of 8 and 16 bits that were loaded, or made of such: the same in 64 bits.
     extended: FxHashMap<ValueId, Extended>,
     blocks: IndexVec<BlockId, Option<ir::Block>>,
     callees: FxHashMap<FuncId, FuncRef>,
@@ -175,7 +197,8 @@ impl<'a, 'f> Translator<'a, 'f> {
             region_bytes: env.program.region_bytes,
             values: IndexVec::from_vec(vec![None; func.values.len()]),
             constants: IndexVec::from_vec(vec![None; func.values.len()]),
-            signed: signed_uses(func),
+            made_in: IndexVec::from_vec(vec![None; func.values.len()]),
+            extensions: extensions(func),
             extended: FxHashMap::default(),
             packs,
             vectors: FxHashMap::default(),
@@ -247,6 +270,14 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     fn defined(&mut self, id: ValueId) -> Value {
+        // Integers are made anew in each block: held over many blocks they would lie in memory, for want of registers.
+        if let (Some(raw), true) = (self.constants[id], self.func.values[id].is_int()) {
+            let here = self.b.current_block();
+            if self.made_in[id] != here {
+                self.values[id] = Some(prim::constant(&mut self.b, self.func.values[id], raw));
+                self.made_in[id] = here;
+            }
+        }
         let value = self.values[id].or_else(|| self.out_of_lanes(id));
         value.unwrap_or_else(|| plcc_diag::bug!("v{} of `{}` has no value", id.index(), self.func.name))
     }
@@ -347,18 +378,24 @@ impl<'a, 'f> Translator<'a, 'f> {
         match inst {
             Inst::Const { dst, raw } => {
                 self.constants[*dst] = Some(*raw);
-                let value = prim::constant(&mut self.b, self.func.values[*dst], *raw);
-                self.values[*dst] = Some(value);
+                if !self.func.values[*dst].is_int() {
+                    let value = prim::constant(&mut self.b, self.func.values[*dst], *raw);
+                    self.values[*dst] = Some(value);
+                }
             }
             Inst::Prim { dst, op, repr, args } => {
-                let value = self.prim(*op, *repr, args);
+                let wide =
+                    if self.extensions[*dst] == Extends::Zero { self.wide_truth(*op, *repr, args) } else { None };
+                let value = match wide {
+                    Some(wide) => self.narrow(*dst, Extended::Zero(wide)),
+                    None => self.prim(*op, *repr, args),
+                };
                 self.values[*dst] = Some(value);
             }
-            Inst::Load { dst, place, .. } if self.func.values[*dst] == Repr::I16 => {
-                let signed = self.signed[*dst];
-                let wide = self.load_extended(place, signed);
-                self.extended.insert(*dst, if signed { Extended::Signed(wide) } else { Extended::Zero(wide) });
-                let value = self.b.ins().ireduce(types::I32, wide);
+            Inst::Load { dst, place, normalise } if self.is_loaded_wide(*dst, place, *normalise) => {
+                let signed = self.extensions[*dst] == Extends::Signed;
+                let wide = self.load_extended(self.func.values[*dst], place, signed);
+                let value = self.narrow(*dst, if signed { Extended::Signed(wide) } else { Extended::Zero(wide) });
                 self.values[*dst] = Some(value);
             }
             Inst::Load { dst, place, normalise } => {
@@ -415,9 +452,14 @@ impl<'a, 'f> Translator<'a, 'f> {
                 let args = [self.value(args[0]), self.carried(args[1]), self.carried(args[2])];
                 prim::emit(&mut self.b, op, repr, &args)
             }
-            (PrimOp::Sext(to) | PrimOp::Zext(to), Repr::I16) => match self.extended(args[0], op) {
+            (PrimOp::Sext(to) | PrimOp::Zext(to), Repr::I8 | Repr::I16) => match self.extended(args[0], op) {
                 Some(wide) if to == Repr::I64 => wide,
-                Some(wide) => self.b.ins().ireduce(clif_type(to), wide),
+                Some(wide) => self.b.ins().ireduce(carrier(to), wide),
+                None if to == Repr::I16 => {
+                    let value = self.value(args[0]);
+                    let wide = if let PrimOp::Sext(_) = op { PrimOp::Sext(Repr::I32) } else { PrimOp::Zext(Repr::I32) };
+                    prim::emit(&mut self.b, wide, repr, &[value])
+                }
                 None => {
                     let value = self.value(args[0]);
                     prim::emit(&mut self.b, op, repr, &[value])
@@ -433,6 +475,33 @@ impl<'a, 'f> Translator<'a, 'f> {
                 prim::emit(&mut self.b, op, repr, &args)
             }
         }
+    }
+
+    /// Whether a load extends at once: 16 bits always, 8 if they are extended later.
+    fn is_loaded_wide(&self, dst: ValueId, place: &Place, normalise: bool) -> bool {
+        let plain = place.bit.is_none() && !normalise;
+        match self.func.values[dst] {
+            Repr::I16 => true,
+            Repr::I8 => plain && self.extensions[dst] == Extends::Zero,
+            _ => false,
+        }
+    }
+
+    /// Remembers what a value is in 64 bits; gives it as it is handed on.
+    fn narrow(&mut self, id: ValueId, extended: Extended) -> Value {
+        let (Extended::Signed(wide) | Extended::Zero(wide)) = extended;
+        self.extended.insert(id, extended);
+        self.b.ins().ireduce(carrier(self.func.values[id]), wide)
+    }
+
+    /// AND, OR, XOR of bytes that are there in 64 bits.
+    fn wide_truth(&mut self, op: PrimOp, repr: Repr, args: &[ValueId]) -> Option<Value> {
+        let all = |v: &ValueId| self.extended(*v, PrimOp::Zext(Repr::I64));
+        if repr != Repr::I8 || !is_bitwise(op) {
+            return None;
+        }
+        let args: Vec<Value> = args.iter().map(all).collect::<Option<_>>()?;
+        Some(prim::emit(&mut self.b, op, Repr::I64, &args))
     }
 
     /// A value that was loaded as this extension gives it.

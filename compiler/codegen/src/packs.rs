@@ -109,15 +109,6 @@ impl Packs {
     }
 }
 
-/// Whether a place lies so many bytes behind another one.
-pub fn follows(first: &Place, bytes: usize, place: &Place) -> bool {
-    let terms = |place: &Place| place.index.len();
-    let same_terms = terms(first) == terms(place)
-        && first.index.iter().zip(&place.index).all(|(a, b)| (a.value, a.stride) == (b.value, b.stride));
-    let same = first.base == place.base && same_terms;
-    same && first.bit.is_none() && place.bit.is_none() && place.offset == first.offset + bytes as i64
-}
-
 /// The positions of so many instructions from one on, but for constants between them.
 fn in_a_row(insts: &[Inst], at: usize, count: usize) -> Option<Vec<usize>> {
     let rest = (at..insts.len()).filter(|n| !matches!(insts[*n], Inst::Const { .. }));
@@ -131,9 +122,7 @@ fn stores(func: &Func, insts: &[Inst], at: usize) -> Option<Vec<usize>> {
     let repr = func.values[*value];
     let list = in_a_row(insts, at, lanes::count(repr)?)?;
     let fits = list.iter().enumerate().all(|(lane, n)| match &insts[*n] {
-        Inst::Store { place, value } => {
-            func.values[*value] == repr && follows(first, lane * repr.bytes() as usize, place)
-        }
+        Inst::Store { place, value } => func.values[*value] == repr && first.goes_on(lane as u32 * repr.bytes(), place),
         _ => false,
     });
     fits.then_some(list)
@@ -194,7 +183,7 @@ impl<'a> Search<'a> {
                 let list = in_a_row(insts, at, lanes::count(repr)?)?;
                 let fits = list.iter().enumerate().all(|(lane, n)| match &insts[*n] {
                     Inst::Load { dst, place, normalise: false } => {
-                        func.values[*dst] == repr && follows(first, lane * repr.bytes() as usize, place)
+                        func.values[*dst] == repr && first.goes_on(lane as u32 * repr.bytes(), place)
                     }
                     _ => false,
                 });

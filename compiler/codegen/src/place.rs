@@ -75,13 +75,13 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Reads 16 bits into 64.
-    pub fn load_extended(&mut self, place: &Place, signed: bool) -> Value {
+    /// Reads 8 bits or 16 into 64.
+    pub fn load_extended(&mut self, repr: Repr, place: &Place, signed: bool) -> Value {
         let (base, offset) = self.address(place);
-        if signed {
-            self.b.ins().sload16(types::I64, memory(), base, offset)
-        } else {
-            self.b.ins().uload16(types::I64, memory(), base, offset)
+        match (repr, signed) {
+            (Repr::I8, _) => self.b.ins().uload8(types::I64, memory(), base, offset),
+            (_, true) => self.b.ins().sload16(types::I64, memory(), base, offset),
+            (_, false) => self.b.ins().uload16(types::I64, memory(), base, offset),
         }
     }
 

@@ -416,6 +416,17 @@ pub struct IndexTerm {
 }
 
 impl Place {
+    /// Whether another place lies so many bytes behind this one; neither is a bit.
+    pub fn goes_on(&self, bytes: u32, next: &Place) -> bool {
+        let terms = self.index.iter().zip(&next.index);
+        self.base == next.base
+            && self.offset + i64::from(bytes) == next.offset
+            && self.index.len() == next.index.len()
+            && terms.into_iter().all(|(a, b)| (a.value, a.stride) == (b.value, b.stride))
+            && self.bit.is_none()
+            && next.bit.is_none()
+    }
+
     /// A place at a constant offset.
     pub fn new(base: Base, offset: u32) -> Self {
         Self { base, offset: i64::from(offset), index: Vec::new(), bit: None }

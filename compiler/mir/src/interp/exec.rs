@@ -118,7 +118,10 @@ pub fn run<const COUNT: bool>(
                     continue;
                 })*
                 $(Op::$u(dst, a) => get!(dst) = eval(PrimOp::$uop $((Repr::$uto))?, Repr::$urepr, &[get!(a)]),)*
-                Op::Select(dst, c, a, b) => get!(dst) = if get!(c) != 0 { get!(a) } else { get!(b) },
+                Op::Select(dst, c, a, b) => {
+                    debug_assert!(get!(c) <= 1, "a truth value is 0 or 1");
+                    get!(dst) = if get!(c) != 0 { get!(a) } else { get!(b) };
+                }
                 Op::Prim(site) => {
                     let site = &func.prims[site as usize];
                     let args = site.args.map(|arg| get!(arg));

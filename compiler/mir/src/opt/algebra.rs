@@ -16,6 +16,10 @@ pub enum Simpler {
     Prim(PrimOp, Repr, Args),
     /// A binary operation with a constant as second operand.
     WithConst(PrimOp, Repr, ValueId, (Repr, u64)),
+    /// A binary operation with a truth value, 0 or 1 of the same representation, as second operand.
+    WithTruth(PrimOp, Repr, ValueId, ValueId),
+    /// A comparison of some bits of a value with 0.
+    Masked(PrimOp, Repr, ValueId, u64),
 }
 
 /// Whether a value is 0 or 1.
@@ -155,6 +159,11 @@ fn with_constant(op: PrimOp, repr: Repr, x: ValueId, c: u64, defs: &Defs) -> Opt
         (Or, Or, Some(d)) => Some(Simpler::WithConst(Or, repr, args[0], (repr, c | d))),
         (Xor, Xor, Some(d)) => Some(Simpler::WithConst(Xor, repr, args[0], (repr, c ^ d))),
         (Eq | Ne, Add, Some(d)) => Some(Simpler::WithConst(op, repr, args[0], (repr, c.wrapping_sub(d) & all))),
+        // Whatever the sign: it divides if the low bits are 0.
+        (Eq | Ne, RemS, Some(d)) if c == 0 && power_of_two(inner_repr, d) => {
+            let size = inner_repr.sign_extend(d).unsigned_abs();
+            Some(Simpler::Masked(op, repr, args[0], size - 1))
+        }
         (Xor, _, _) if c == 1 && repr == Repr::I8 => negated(inner, inner_repr, args),
         // Comparing an extended number with a constant of its own width.
         (Eq | Ne | LtU | LeU, Zext(_), _) if c <= inner_repr.mask() => {
@@ -167,6 +176,11 @@ fn with_constant(op: PrimOp, repr: Repr, x: ValueId, c: u64, defs: &Defs) -> Opt
         }
         _ => None,
     }
+}
+
+/// Whether a divisor, without its sign, is a power of two.
+fn power_of_two(repr: Repr, raw: u64) -> bool {
+    repr.sign_extend(raw).unsigned_abs().is_power_of_two()
 }
 
 /// NOT of a comparison. (Of reals only equality has an opposite: a NaN makes all others FALSE.)
@@ -210,7 +224,22 @@ fn select(repr: Repr, c: ValueId, a: ValueId, b: ValueId, defs: &Defs) -> Option
             _ => {}
         }
     }
-    None
+    counted(repr, c, a, b, defs)
+}
+
+/// One more, or one less, if a truth value holds: its sum with the value. What was compared right before needs no register
+/// as a condition, and stays one.
+fn counted(repr: Repr, c: ValueId, a: ValueId, b: ValueId, defs: &Defs) -> Option<Simpler> {
+    let Def::Prim(PrimOp::Add, _, Args::Two([x, step])) = defs[a] else { return None };
+    let compared = matches!(defs[c], Def::Prim(op, from, _) if !(from == Repr::I8 && matches!(op, PrimOp::And | PrimOp::Or | PrimOp::Xor)));
+    if x != b || compared {
+        return None;
+    }
+    match defs[step] {
+        Def::Const(1) => Some(Simpler::WithTruth(PrimOp::Add, repr, b, c)),
+        Def::Const(raw) if raw == repr.mask() => Some(Simpler::WithTruth(PrimOp::Sub, repr, b, c)),
+        _ => None,
+    }
 }
 
 fn is_one(repr: Repr, raw: u64) -> bool {

@@ -243,6 +243,22 @@ impl Folder<'_> {
         self.replace.get(dst)
     }
 
+    /// A truth value as a number.
+    fn widened(&mut self, repr: Repr, truth: ValueId) -> ValueId {
+        if repr == Repr::I8 {
+            return truth;
+        }
+        self.part(PrimOp::Zext(repr), Repr::I8, repr, Args::One([truth]))
+    }
+
+    /// An operation on values of `repr`, for what another one becomes.
+    fn part(&mut self, op: PrimOp, repr: Repr, result: Repr, args: Args) -> ValueId {
+        let dst = self.func.values.push(result);
+        self.defs.push(Def::Other);
+        self.prim(dst, op, repr, args);
+        self.replace.get(dst)
+    }
+
     fn prim(&mut self, dst: ValueId, op: PrimOp, repr: Repr, args: Args) {
         let mut now = (op, repr, args);
         // Each step is simpler than the one before; the bound is for a mistake in a rule.
@@ -259,6 +275,15 @@ impl Folder<'_> {
                 Some(Simpler::Prim(op, repr, args)) => now = (op, repr, args),
                 Some(Simpler::WithConst(op, repr, a, (c_repr, raw))) => {
                     let c = self.number(c_repr, raw);
+                    now = (op, repr, Args::Two([a, c]));
+                }
+                Some(Simpler::Masked(op, repr, x, mask)) => {
+                    let (mask, zero) = (self.number(repr, mask), self.number(repr, 0));
+                    let bits = self.part(PrimOp::And, repr, repr, Args::Two([x, mask]));
+                    now = (op, repr, Args::Two([bits, zero]));
+                }
+                Some(Simpler::WithTruth(op, repr, a, truth)) => {
+                    let c = self.widened(repr, truth);
                     now = (op, repr, Args::Two([a, c]));
                 }
             }
