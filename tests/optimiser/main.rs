@@ -1,6 +1,7 @@
 //! What single passes of the optimiser achieve, on small programs: how much of a kind of instruction is left. That the
 //! programs still mean the same is tested for each of them as well.
 
+mod arrange;
 mod divide;
 mod lanes;
 mod ranges;

@@ -21,6 +21,13 @@ pub struct Dominators {
 
 const NONE: u32 = u32::MAX;
 
+/// The reachable blocks in reverse post-order; the entry is first.
+pub fn reverse_postorder(func: &Func) -> Vec<BlockId> {
+    let mut order = Walk::new(func).postorder;
+    order.reverse();
+    order
+}
+
 impl Dominators {
     /// Computes them. Targets outside the function are ignored (the verifier reports them).
     pub fn new(func: &Func) -> Self {

@@ -104,7 +104,14 @@ impl Facts {
                 }
             }
         }
-        for id in order {
+        // Of functions that are called; most were inlined by now.
+        let mut called: IndexVec<FuncId, bool> = IndexVec::from_vec(vec![false; count]);
+        for inst in program.funcs.iter().flat_map(|f| &f.blocks).flat_map(|b| &b.insts) {
+            if let Inst::Call { callee, .. } = inst {
+                called[*callee] = true;
+            }
+        }
+        for id in order.into_iter().filter(|id| called[*id]) {
             let effects = facts.effects_of(program, id);
             facts.effects[id] = effects;
         }

@@ -25,7 +25,7 @@ const KNOWN: usize = 40;
 const LIFETIME: u32 = 64;
 
 /// A place whose value is known.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 struct Known {
     place: Place,
     repr: Repr,
@@ -37,6 +37,11 @@ struct Known {
 }
 
 impl Known {
+    /// Whether another one says the same.
+    fn says(&self, other: &Self) -> bool {
+        (self.value, self.repr, self.truth) == (other.value, other.repr, other.truth) && self.place == other.place
+    }
+
     /// Whether a load gives this value.
     fn gives(&self, place: &Place, repr: Repr, normalise: bool) -> bool {
         // A byte that was read as a truth value may be another one in memory.
@@ -61,7 +66,7 @@ pub fn run(func: &mut Func, alias: &Alias) {
     let mut ends: IndexVec<BlockId, Option<Vec<Known>>> = func.blocks.iter().map(|_| None).collect();
     for &block in &tree.order {
         let preds = &tree.preds[block];
-        let mut known = common(preds, &ends, |k, o| Known { used: k.used, ..o.clone() } == *k);
+        let mut known = common(preds, &ends, |k, other| k.says(other));
         let mut meetings = meetings(&func.blocks[block], preds, &ends);
         let insts = std::mem::take(&mut func.blocks[block].insts);
         let mut out = Vec::with_capacity(insts.len());

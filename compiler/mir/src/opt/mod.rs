@@ -14,6 +14,7 @@ mod clean;
 mod copies;
 mod dead_stores;
 mod divide;
+mod early;
 mod fold;
 mod forward;
 mod frames;
@@ -23,9 +24,11 @@ mod induction;
 mod inline;
 mod jam;
 mod loops;
+mod moves;
 mod promote;
 mod proven;
 mod ranges;
+mod reload;
 mod rewrite;
 mod rotate;
 mod scale;
@@ -92,6 +95,7 @@ pub fn passes() -> &'static [Pass] {
         Pass { name: "late_ranges", run: |p| each(p, ranges::run_late) }, FOLD,
         Pass { name: "divide", run: |p| each(p, divide::run) },
         Pass { name: "scale", run: |p| each(p, scale::run) }, FOLD, INDUCTION, LOOP_FOLD, HOIST,
+        Pass { name: "arrange", run: |p| with_facts(p, arrange) },
         Pass { name: "rotate", run: |p| each(p, rotate::run) },
         Pass { name: "clean", run: |p| each(p, clean::run) },
     ];
@@ -152,6 +156,15 @@ fn may_loop(func: &Func) -> bool {
         block.term.for_each_target(|target| back |= target.block <= id);
         back
     })
+}
+
+/// The last that is asked about memory: where what is done stands best for the machine.
+fn arrange(func: &mut Func, alias: &alias::Alias) {
+    if may_loop(func) {
+        reload::run(func, alias);
+    }
+    moves::run(func, alias);
+    early::run(func, alias);
 }
 
 /// Results are built in place, then what is known of strings is not asked again.

@@ -1,6 +1,6 @@
 //! Tools of the passes: replacing values, where values come from, compaction.
 
-use crate::dominators::Dominators;
+use crate::dominators::reverse_postorder;
 use crate::ir::{BlockId, Func, Inst, Target, ValueId};
 use crate::visit;
 use index_vec::IndexVec;
@@ -126,7 +126,7 @@ impl Constants {
 /// Leaves out blocks that the entry does not reach, puts the others into reverse post-order and numbers blocks and values
 /// without gaps.
 pub fn compact(func: &mut Func) {
-    let order = Dominators::new(func).order;
+    let order = reverse_postorder(func);
     let mut number: IndexVec<BlockId, Option<BlockId>> = IndexVec::from_vec(vec![None; func.blocks.len()]);
     for (n, block) in order.iter().enumerate() {
         number[*block] = Some(BlockId::from_usize(n));

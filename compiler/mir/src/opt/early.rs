@@ -1,0 +1,82 @@
+//! What decides how a block ends is calculated as early as possible in it.
+//!
+//! A processor that guessed a jump wrong has to start again as soon as it knows better: what stands between would only delay
+//! that. Loads stay behind what may write their place, and behind checks and calls.
+//!
+//! ```text
+//! b1: store i8 station.part := v1            b1: v2 = load i16 station.phase
+//!     v2 = load i16 station.phase      =>        store i8 station.part := v1
+//!     case v2, ...                               case v2, ...
+//! ```
+
+use super::alias::Alias;
+use super::rewrite::{Constants, is_pure, writes_memory};
+use crate::ir::{Func, Inst, Term, ValueId};
+use rustc_hash::FxHashSet;
+
+/// The pass.
+pub fn run(func: &mut Func, alias: &Alias) {
+    let constants = Constants::new(func);
+    for id in func.blocks.indices() {
+        let block = &func.blocks[id];
+        let decides = match block.term {
+            Term::Branch { cond, .. } => cond,
+            Term::Switch { value, .. } => value,
+            Term::Jump(_) | Term::Return(_) => continue,
+        };
+        let Some((slice, first)) = slice(func, alias, &constants, &block.insts, decides) else { continue };
+        let insts = std::mem::take(&mut func.blocks[id].insts);
+        let (mut moved, mut rest) = (Vec::new(), Vec::with_capacity(insts.len()));
+        let mut front = insts;
+        let behind = front.split_off(first);
+        for (n, inst) in behind.into_iter().enumerate() {
+            if slice.contains(&(first + n)) { moved.push(inst) } else { rest.push(inst) }
+        }
+        front.append(&mut moved);
+        front.append(&mut rest);
+        func.blocks[id].insts = front;
+    }
+}
+
+/// The instructions of a block of which a value is made, and in front of which instruction all of them can stand.
+fn slice(
+    func: &Func,
+    alias: &Alias,
+    constants: &Constants,
+    insts: &[Inst],
+    value: ValueId,
+) -> Option<(FxHashSet<usize>, usize)> {
+    let mut wanted: FxHashSet<ValueId> = FxHashSet::from_iter([value]);
+    let mut slice = FxHashSet::default();
+    let mut loads: Vec<&Inst> = Vec::new();
+    for (n, inst) in insts.iter().enumerate().rev() {
+        let made = inst.results().0.is_some_and(|dst| wanted.contains(&dst));
+        if made && is_pure(inst) {
+            inst.for_each_use(|v| {
+                wanted.insert(v);
+            });
+            slice.insert(n);
+            loads.extend(matches!(inst, Inst::Load { .. }).then_some(inst));
+            continue;
+        }
+        let writes = writes_memory(inst)
+            && loads.iter().any(|load| match load {
+                Inst::Load { dst, place, .. } => {
+                    alias.may_write(func, constants, inst, place, i64::from(func.values[*dst].bytes()))
+                }
+                _ => false,
+            });
+        let barrier = made || writes || matches!(inst, Inst::Check { .. } | Inst::Poll { .. } | Inst::Call { .. });
+        if barrier {
+            // What of it stands in front stays there.
+            slice.retain(|at| *at > n);
+            return worth(insts, &slice).then_some((slice, n + 1));
+        }
+    }
+    worth(insts, &slice).then_some((slice, 0))
+}
+
+/// What is in registers already is there in time: counters of loops stay where they are.
+fn worth(insts: &[Inst], slice: &FxHashSet<usize>) -> bool {
+    slice.iter().any(|at| matches!(insts[*at], Inst::Load { .. }))
+}
