@@ -91,19 +91,17 @@ fn what_decides_is_read_first() {
     }
     assert_eq!(switches, 1);
     // A check stays in front of what it guards, and a store of what may be its place.
-    for body in
-        ["x[n] := 1; IF x[k] > 2 THEN sum := 1; ELSE sum := sum * 3; all := 5; n := n + 1; c := d; e := c; END_IF;"]
-    {
-        let guarded = optimised_with(VALVE, DECLARATIONS, body);
-        let first = guarded.funcs[guarded.tasks[0]].blocks.iter().flat_map(|b| &b.insts);
-        let order: Vec<&str> = first
-            .filter_map(|inst| match inst {
-                Inst::Check { .. } => Some("check"),
-                Inst::Store { place, .. } if !place.index.is_empty() => Some("store"),
-                Inst::Load { place, .. } if !place.index.is_empty() => Some("load"),
-                _ => None,
-            })
-            .collect();
-        assert_eq!(order, ["check", "store", "check", "load"], "{}", text(&guarded));
-    }
+    let body =
+        "x[n] := 1; IF x[k] > 2 THEN sum := 1; ELSE sum := sum * 3; all := 5; n := n + 1; c := d; e := c; END_IF;";
+    let guarded = optimised_with(VALVE, DECLARATIONS, body);
+    let first = guarded.funcs[guarded.tasks[0]].blocks.iter().flat_map(|b| &b.insts);
+    let order: Vec<&str> = first
+        .filter_map(|inst| match inst {
+            Inst::Check { .. } => Some("check"),
+            Inst::Store { place, .. } if !place.index.is_empty() => Some("store"),
+            Inst::Load { place, .. } if !place.index.is_empty() => Some("load"),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(order, ["check", "store", "check", "load"], "{}", text(&guarded));
 }

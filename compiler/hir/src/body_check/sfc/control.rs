@@ -16,17 +16,35 @@ use rustc_hash::FxHashSet;
 /// By step: flags of the action controls that must be called when it becomes active.
 pub(super) type Wakes = IndexVec<StepId, Vec<Place>>;
 
-/// The statements of steps (2) and (3) of the evolution (\[F2\]).
-pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, out: &mut Vec<Stmt>) -> Wakes {
+/// The statements of steps (2) and (3) of the evolution (\[F2\]), in front of them what the first call does. If there are
+/// action controls, it is looked at together with them, in the first call and never again.
+pub(super) fn write(
+    w: &mut Writer,
+    chart: &Chart,
+    groups: &Groups,
+    first: Option<Stmt>,
+    out: &mut Vec<Stmt>,
+) -> Wakes {
     let mut users: Vec<Vec<User>> = chart.actions.iter().map(|_| Vec::new()).collect();
     for (step, s) in chart.steps.iter_enumerated() {
         for association in &s.associations {
             users[association.action.index()].push(User { step, association });
         }
     }
-    let mut awake = Awake::new(w, chart, users.iter().filter(|users| !is_wire(users)).count());
-    let mut running = Vec::new();
+    let count = users.iter().filter(|users| !is_wire(users)).count();
     let mut controls = Grouped::default();
+    let with_controls = first.is_some() && count > 0;
+    let mut awake = Awake::new(w, chart, count + usize::from(with_controls));
+    if let Some(first) = first {
+        let span = first.span;
+        if with_controls {
+            let (number, flag) = awake.take(&[]);
+            controls.push_flagged(None, number, vec![assign(flag, constant(0, BOOL, span), span), first], span);
+        } else {
+            out.push(first);
+        }
+    }
+    let mut running = Vec::new();
     for (id, users) in chart.actions.indices().zip(&users) {
         running.push(control(w, chart, id, users, groups, &mut awake, &mut controls));
     }

@@ -185,13 +185,49 @@ pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, chosen: &Flags
             groups.wake(groups.of(*step), span, &mut on);
             on.extend(wakes[*step].iter().map(|awake| assign(awake.clone(), constant(1, BOOL, span), span)));
         }
-        set.push_flagged(group, id.index(), on, span);
+        let quiet = if group.is_none() { quietly(chart, state, id, wakes) } else { Vec::new() };
+        set.push_either(group, id.index(), on, quiet, span);
     }
     let mut body = Vec::new();
     clear.finish(groups, chosen, &mut body);
     set.finish(groups, chosen, &mut body);
     let span = chart.span.before();
     out.push(when(read_temp(state.fires, BOOL, span), body, span));
+}
+
+/// Sets the succeeding steps of a transition if it is chosen, without a jump: a processor cannot know which of several
+/// transitions fires. Empty if that would be long.
+fn quietly(chart: &Chart, state: &State, id: TransitionId, wakes: &Wakes) -> Vec<Stmt> {
+    let transition = &chart.transitions[id];
+    let span = transition.span;
+    let woken: usize = transition.to.iter().map(|step| wakes[*step].len()).sum();
+    if transition.to.len() > 1 || woken > 2 {
+        return Vec::new();
+    }
+    let chosen = || read(state.chosen[id].clone());
+    let or = |place: Place| {
+        let value = any(&[read(place.clone()), chosen()], span);
+        assign(place, value, span)
+    };
+    let mut out = Vec::new();
+    for step in &transition.to {
+        if let Some(merged) = &state.merged {
+            let tell = [of_step(chart, *step, field::TWICE), merged.clone()];
+            let tell = tell.map(|place| assign(place, constant(1, BOOL, span), span));
+            out.push(when(all(&[chosen(), active(chart, *step)], span), tell.to_vec(), span));
+        }
+        out.push(or(of_step(chart, *step, field::X)));
+        let now = read_temp(state.now, Elem::Time, span);
+        for (part, value) in [(field::T, constant(0, Elem::Time, span)), (field::START, now)] {
+            let place = of_step(chart, *step, part);
+            let kept = vec![chosen(), read(place.clone()), value];
+            let kind = crate::body::ExprKind::Op(Op::Sel, Elem::Time, kept);
+            out.push(assign(place, Expr { kind, ty: Types::elem(Elem::Time), span }, span));
+        }
+        out.extend(wakes[*step].iter().map(|awake| or(awake.clone())));
+    }
+    out.push(assign(state.chosen[id].clone(), constant(0, BOOL, span), span));
+    out
 }
 
 /// A step becomes active: its time starts (\[F6\]).
@@ -229,24 +265,24 @@ pub(super) fn state(w: &mut Writer, chart: &Chart) -> State {
     State { now, fires, chosen, edges, merged }
 }
 
-/// What comes before step (1): in the first call the time of the initial steps starts (\[F6\]).
-pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) {
+/// What comes before step (1). Gives what the first call does: the time of the initial steps starts (\[F6\]).
+pub(super) fn begin(w: &mut Writer, chart: &Chart, state: &State, out: &mut Vec<Stmt>) -> Stmt {
     let (ty, span) = (Types::elem(BOOL), chart.span.before());
     let time = Types::elem(Elem::Time);
     let Some(clock) = plcc_stdlib::funcs::find("TIME") else { plcc_diag::bug!("there is no TIME()") };
     let kind = crate::body::ExprKind::Std { func: clock, elem: Elem::Time, args: Vec::new() };
     out.push(assign_temp(state.now, Expr { kind, ty: time, span }, span));
     out.push(assign_temp(state.fires, constant(0, BOOL, span), span));
+    if let Some((calls, _)) = &state.edges {
+        let next = operation(Op::Add, Elem::Lint, vec![read(calls.clone()), constant(1, Elem::Lint, span)], span);
+        out.push(assign(calls.clone(), next, span));
+    }
     let started = variable(w.hidden("started", ty, span), ty, span);
     let initial = chart.networks.iter().map(|n| n.initial);
     let now = || read_temp(state.now, Elem::Time, span);
     let mut first = vec![assign(started.clone(), constant(1, BOOL, span), span)];
     first.extend(initial.map(|s| assign(of_step(chart, s, field::START), now(), span)));
-    out.push(when(not(read(started)), first, span));
-    if let Some((calls, _)) = &state.edges {
-        let next = operation(Op::Add, Elem::Lint, vec![read(calls.clone()), constant(1, Elem::Lint, span)], span);
-        out.push(assign(calls.clone(), next, span));
-    }
+    when(not(read(started)), first, span)
 }
 
 /// (1) Refreshes the times of active steps, but of those that are late.

@@ -15,6 +15,8 @@ use plcc_stdlib::ops::Op;
 pub(super) struct Item {
     pub flag: Option<(usize, Span)>,
     pub stmts: Vec<Stmt>,
+    /// The same without a condition: statements that change nothing while the flag is FALSE.
+    pub quiet: Vec<Stmt>,
 }
 
 /// BOOLs in their order in memory, a byte each.
@@ -77,6 +79,9 @@ impl Flags {
     /// One item under its own flag, which is a byte of the known word.
     fn item(&self, mut item: Item, known: Option<(Elem, usize)>, out: &mut Vec<Stmt>) {
         let Some((flag, span)) = item.flag else { return out.append(&mut item.stmts) };
+        if known.is_some_and(|(word, _)| word == Elem::Dword) && !item.quiet.is_empty() {
+            return out.append(&mut item.quiet);
+        }
         let condition = match known {
             Some((word, first)) if word == Elem::Dword => {
                 let mask = constant(0xFF << (8 * (flag - first)), word, span);

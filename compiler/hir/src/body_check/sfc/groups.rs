@@ -92,16 +92,21 @@ pub(super) struct Grouped {
 
 impl Grouped {
     pub fn push(&mut self, group: Group, stmts: impl IntoIterator<Item = Stmt>) {
-        self.add(group, None, stmts);
+        self.add(group, None, stmts, Vec::new());
     }
 
     /// Statements for the case that this flag of those given to `finish` is TRUE.
     pub fn push_flagged(&mut self, group: Group, flag: usize, stmts: Vec<Stmt>, span: Span) {
-        self.add(group, Some((flag, span)), stmts);
+        self.add(group, Some((flag, span)), stmts, Vec::new());
     }
 
-    fn add(&mut self, group: Group, flag: Option<(usize, Span)>, stmts: impl IntoIterator<Item = Stmt>) {
-        let item = Item { flag, stmts: stmts.into_iter().collect() };
+    /// The same; `quiet` changes nothing while the flag is FALSE, else it does what the statements do.
+    pub fn push_either(&mut self, group: Group, flag: usize, stmts: Vec<Stmt>, quiet: Vec<Stmt>, span: Span) {
+        self.add(group, Some((flag, span)), stmts, quiet);
+    }
+
+    fn add(&mut self, group: Group, flag: Option<(usize, Span)>, stmts: impl IntoIterator<Item = Stmt>, quiet: Vec<Stmt>) {
+        let item = Item { flag, stmts: stmts.into_iter().collect(), quiet };
         match self.runs.last_mut() {
             Some((last, list)) if *last == group => list.push(item),
             _ => self.runs.push((group, vec![item])),

@@ -87,13 +87,17 @@ fn write(cx: &mut Cx, chart: &Chart, late: &Late) {
     let mut w = Writer { c: &mut checker, owner: chart.owner, prefix };
     let mut stmts = Vec::new();
     let state = evolve::state(&mut w, chart);
-    evolve::begin(&mut w, chart, &state, &mut stmts);
+    let mut first = Some(evolve::begin(&mut w, chart, &state, &mut stmts));
+    // Where the times of initial steps are refreshed with the transitions, action control can look after it.
+    if !chart.networks.iter().all(|network| late[network.initial]) {
+        stmts.extend(first.take());
+    }
     let groups = groups::Groups::new(&mut w, chart);
     let steps = chart.steps.indices().map(|s| of_step(chart, s, field::X));
     let steps = Flags::new(steps.collect(), chart.steps.len().next_multiple_of(FLAGS_AT_ONCE as usize));
     let chosen = Flags::new(state.chosen.iter().cloned().collect(), chart.transitions.len());
     evolve::times(chart, &state, &groups, &steps, late, &mut stmts);
-    let wakes = control::write(&mut w, chart, &groups, &mut stmts);
+    let wakes = control::write(&mut w, chart, &groups, first, &mut stmts);
     evolve::evaluate(&mut w, chart, &state, &groups, &steps, late, &mut stmts);
     evolve::fire(chart, &state, &groups, &chosen, &wakes, &mut stmts);
     let temps = checker.temps;
