@@ -233,6 +233,11 @@ impl PrimOp {
         }
     }
 
+    /// AND, OR, XOR: each bit of the result depends on the same bit of the operands.
+    pub fn is_bitwise(self) -> bool {
+        matches!(self, PrimOp::And | PrimOp::Or | PrimOp::Xor)
+    }
+
     /// Whether it is defined on `repr`.
     pub fn accepts(self, repr: Repr) -> bool {
         use PrimOp::*;

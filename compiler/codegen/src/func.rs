@@ -127,7 +127,7 @@ fn extensions(func: &Func) -> IndexVec<ValueId, Extends> {
                 Inst::Prim { op: PrimOp::Zext(_), repr: Repr::I8 | Repr::I16, args, .. } => {
                     uses[args[0]] = Extends::Zero;
                 }
-                Inst::Prim { dst, op, repr: Repr::I8, args } if is_bitwise(*op) && uses[*dst] == Extends::Zero => {
+                Inst::Prim { dst, op, repr: Repr::I8, args } if op.is_bitwise() && uses[*dst] == Extends::Zero => {
                     args.iter().for_each(|arg| uses[*arg] = Extends::Zero);
                 }
                 _ => {}
@@ -135,10 +135,6 @@ fn extensions(func: &Func) -> IndexVec<ValueId, Extends> {
         }
     }
     uses
-}
-
-fn is_bitwise(op: PrimOp) -> bool {
-    matches!(op, PrimOp::And | PrimOp::Or | PrimOp::Xor)
 }
 
 /// The walk over one function.
@@ -497,7 +493,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     /// AND, OR, XOR of bytes that are there in 64 bits.
     fn wide_truth(&mut self, op: PrimOp, repr: Repr, args: &[ValueId]) -> Option<Value> {
         let all = |v: &ValueId| self.extended(*v, PrimOp::Zext(Repr::I64));
-        if repr != Repr::I8 || !is_bitwise(op) {
+        if repr != Repr::I8 || !op.is_bitwise() {
             return None;
         }
         let args: Vec<Value> = args.iter().map(all).collect::<Option<_>>()?;

@@ -10,6 +10,7 @@ impl Translator<'_, '_> {
             Cond::True(value) => {
                 let value = self.value(value);
                 self.b.ins().brif(value, next, &[], failed, &[]);
+                // The operands are made there.
                 self.b.switch_to_block(failed);
             }
             Cond::Within { value, low, high } => {

@@ -32,7 +32,7 @@ pub fn is_truth(defs: &Defs, value: ValueId) -> bool {
         match defs[value] {
             Def::Truth | Def::Const(0 | 1) => {}
             Def::Prim(Eq | Ne | LtS | LeS | LtU | LeU | FEq | FNe | FLt | FLe, ..) => {}
-            Def::Prim(And | Or | Xor, Repr::I8, args) if steps < 8 => work.extend(args.iter()),
+            Def::Prim(op, Repr::I8, args) if op.is_bitwise() && steps < 8 => work.extend(args.iter()),
             Def::Prim(Select, Repr::I8, Args::Three([_, a, b])) if steps < 8 => work.extend([a, b]),
             _ => return false,
         }
@@ -231,7 +231,7 @@ fn select(repr: Repr, c: ValueId, a: ValueId, b: ValueId, defs: &Defs) -> Option
 /// as a condition, and stays one.
 fn counted(repr: Repr, c: ValueId, a: ValueId, b: ValueId, defs: &Defs) -> Option<Simpler> {
     let Def::Prim(PrimOp::Add, _, Args::Two([x, step])) = defs[a] else { return None };
-    let compared = matches!(defs[c], Def::Prim(op, from, _) if !(from == Repr::I8 && matches!(op, PrimOp::And | PrimOp::Or | PrimOp::Xor)));
+    let compared = matches!(defs[c], Def::Prim(op, ..) if !op.is_bitwise());
     if x != b || compared {
         return None;
     }

@@ -14,6 +14,9 @@ use super::rewrite::{Constants, is_pure, writes_memory};
 use crate::ir::{Func, Inst, Term, ValueId};
 use rustc_hash::FxHashSet;
 
+/// What is made of more loads than these stays where it is.
+const LOADS: usize = 16;
+
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
     let constants = Constants::new(func);
@@ -66,7 +69,10 @@ fn slice(
                 }
                 _ => false,
             });
-        let barrier = made || writes || matches!(inst, Inst::Check { .. } | Inst::Poll { .. } | Inst::Call { .. });
+        let barrier = made
+            || writes
+            || loads.len() > LOADS
+            || matches!(inst, Inst::Check { .. } | Inst::Poll { .. } | Inst::Call { .. });
         if barrier {
             // What of it stands in front stays there.
             slice.retain(|at| *at > n);

@@ -22,13 +22,18 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// statement needs meanwhile.
 const HELD: usize = 10;
 
+/// A loop of more instructions is left alone: what it holds is in memory anyway.
+const LARGE: usize = 3_000;
+
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
     let loops = loops::find(func);
     let headers: FxHashSet<BlockId> = loops.iter().map(|l| l.header).collect();
     // Around an inner loop a load in each pass of it would cost more.
     let innermost = |l: &Loop| l.blocks.iter().all(|block| *block == l.header || !headers.contains(block));
-    let crowded: Vec<&Loop> = loops.iter().filter(|l| l.blocks.len() > 1 && innermost(l)).collect();
+    let size = |l: &Loop| l.blocks.iter().map(|block| func.blocks[*block].insts.len()).sum::<usize>();
+    let may_be_crowded = |l: &&Loop| l.blocks.len() > 1 && innermost(l) && size(l) <= LARGE;
+    let crowded: Vec<&Loop> = loops.iter().filter(may_be_crowded).collect();
     if crowded.is_empty() {
         return;
     }

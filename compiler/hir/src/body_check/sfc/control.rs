@@ -18,13 +18,7 @@ pub(super) type Wakes = IndexVec<StepId, Vec<Place>>;
 
 /// The statements of steps (2) and (3) of the evolution (\[F2\]), in front of them what the first call does. If there are
 /// action controls, it is looked at together with them, in the first call and never again.
-pub(super) fn write(
-    w: &mut Writer,
-    chart: &Chart,
-    groups: &Groups,
-    first: Option<Stmt>,
-    out: &mut Vec<Stmt>,
-) -> Wakes {
+pub(super) fn write(w: &mut Writer, chart: &Chart, groups: &Groups, first: Option<Stmt>, out: &mut Vec<Stmt>) -> Wakes {
     let mut users: Vec<Vec<User>> = chart.actions.iter().map(|_| Vec::new()).collect();
     for (step, s) in chart.steps.iter_enumerated() {
         for association in &s.associations {

@@ -105,7 +105,13 @@ impl Grouped {
         self.add(group, Some((flag, span)), stmts, quiet);
     }
 
-    fn add(&mut self, group: Group, flag: Option<(usize, Span)>, stmts: impl IntoIterator<Item = Stmt>, quiet: Vec<Stmt>) {
+    fn add(
+        &mut self,
+        group: Group,
+        flag: Option<(usize, Span)>,
+        stmts: impl IntoIterator<Item = Stmt>,
+        quiet: Vec<Stmt>,
+    ) {
         let item = Item { flag, stmts: stmts.into_iter().collect(), quiet };
         match self.runs.last_mut() {
             Some((last, list)) if *last == group => list.push(item),
