@@ -13,6 +13,7 @@
 use super::alias::Alias;
 use super::loops::{self, Loop};
 use super::rewrite::{Constants, writes_memory};
+use crate::dominators::Dominators;
 use crate::ir::{Base, BlockId, Func, Inst, ValueId};
 use crate::visit;
 use index_vec::IndexVec;
@@ -24,6 +25,9 @@ const HELD: usize = 10;
 
 /// A loop of more instructions is left alone: what it holds is in memory anyway.
 const LARGE: usize = 3_000;
+
+/// So many blocks may lie between a load and the loop.
+const BETWEEN: usize = 32;
 
 /// The pass.
 pub fn run(func: &mut Func, alias: &Alias) {
@@ -53,6 +57,8 @@ pub fn run(func: &mut Func, alias: &Alias) {
             }
         }
     }
+    // Loads add no blocks.
+    let mut tree = None;
     for l in crowded {
         let (held, outside) = held(func, l, &made_in, &constants);
         let many = held.saturating_sub(HELD);
@@ -61,10 +67,12 @@ pub fn run(func: &mut Func, alias: &Alias) {
         }
         let writers: Vec<&Inst> =
             l.blocks.iter().flat_map(|b| &func.blocks[*b].insts).filter(|inst| writes_memory(inst)).collect();
-        let unchanged = |value: &ValueId| match loads.get(value) {
-            Some(Inst::Load { dst, place, .. }) => {
+        let tree = tree.get_or_insert_with(|| Dominators::new(func));
+        let unchanged = |value: &ValueId| match (loads.get(value), made_in[*value]) {
+            (Some(Inst::Load { dst, place, .. }), Some(home)) => {
                 let bytes = i64::from(func.values[*dst].bytes());
-                !writers.iter().any(|w| alias.may_write(func, &constants, w, place, bytes))
+                let writes = |w: &Inst| writes_memory(w) && alias.may_write(func, &constants, w, place, bytes);
+                !writers.iter().any(|w| writes(w)) && holds_until(func, tree, (home, *dst), l.preheader, &writes)
             }
             _ => false,
         };
@@ -73,6 +81,31 @@ pub fn run(func: &mut Func, alias: &Alias) {
             l.blocks.iter().for_each(|block| load_in(func, *block, value, &loads[&value]));
         }
     }
+}
+
+/// Whether memory still has what was loaded at the end of a block: nothing wrote it on any way there from the load.
+fn holds_until(
+    func: &Func,
+    tree: &Dominators,
+    (home, value): (BlockId, ValueId),
+    end: BlockId,
+    writes: &impl Fn(&Inst) -> bool,
+) -> bool {
+    let mut seen: FxHashSet<BlockId> = FxHashSet::from_iter([end]);
+    let mut work = vec![end];
+    while let Some(id) = work.pop() {
+        let insts = &func.blocks[id].insts;
+        let first = if id == home {
+            insts.iter().position(|inst| inst.results().0 == Some(value)).map_or(0, |at| at + 1)
+        } else {
+            work.extend(tree.preds[id].iter().filter(|pred| seen.insert(**pred)));
+            0
+        };
+        if seen.len() > BETWEEN || insts[first..].iter().any(writes) {
+            return false;
+        }
+    }
+    true
 }
 
 /// How many integers a loop holds from block to block, and which of them were made outside, in the order of their first use.
