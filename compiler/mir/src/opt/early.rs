@@ -11,7 +11,7 @@
 
 use super::alias::Alias;
 use super::rewrite::{Constants, is_pure, writes_memory};
-use crate::ir::{Func, Inst, Term, ValueId};
+use crate::ir::{Func, Inst, Place, Term, ValueId};
 use rustc_hash::FxHashSet;
 
 /// What is made of more loads than these stays where it is.
@@ -28,16 +28,11 @@ pub fn run(func: &mut Func, alias: &Alias) {
             Term::Jump(_) | Term::Return(_) => continue,
         };
         let Some((slice, first)) = slice(func, alias, &constants, &block.insts, decides) else { continue };
-        let insts = std::mem::take(&mut func.blocks[id].insts);
-        let (mut moved, mut rest) = (Vec::new(), Vec::with_capacity(insts.len()));
-        let mut front = insts;
-        let behind = front.split_off(first);
-        for (n, inst) in behind.into_iter().enumerate() {
-            if slice.contains(&(first + n)) { moved.push(inst) } else { rest.push(inst) }
-        }
-        front.append(&mut moved);
-        front.append(&mut rest);
-        func.blocks[id].insts = front;
+        let mut insts = std::mem::take(&mut func.blocks[id].insts);
+        let behind = insts.split_off(first).into_iter().zip(first..);
+        let (moved, stay): (Vec<_>, Vec<_>) = behind.partition(|(_, at)| slice.contains(at));
+        insts.extend(moved.into_iter().chain(stay).map(|(inst, _)| inst));
+        func.blocks[id].insts = insts;
     }
 }
 
@@ -51,7 +46,7 @@ fn slice(
 ) -> Option<(FxHashSet<usize>, usize)> {
     let mut wanted: FxHashSet<ValueId> = FxHashSet::from_iter([value]);
     let mut slice = FxHashSet::default();
-    let mut loads: Vec<&Inst> = Vec::new();
+    let mut loads: Vec<(&Place, i64)> = Vec::new();
     for (n, inst) in insts.iter().enumerate().rev() {
         let made = inst.results().0.is_some_and(|dst| wanted.contains(&dst));
         if made && is_pure(inst) {
@@ -59,16 +54,13 @@ fn slice(
                 wanted.insert(v);
             });
             slice.insert(n);
-            loads.extend(matches!(inst, Inst::Load { .. }).then_some(inst));
+            if let Inst::Load { dst, place, .. } = inst {
+                loads.push((place, i64::from(func.values[*dst].bytes())));
+            }
             continue;
         }
         let writes = writes_memory(inst)
-            && loads.iter().any(|load| match load {
-                Inst::Load { dst, place, .. } => {
-                    alias.may_write(func, constants, inst, place, i64::from(func.values[*dst].bytes()))
-                }
-                _ => false,
-            });
+            && loads.iter().any(|(place, bytes)| alias.may_write(func, constants, inst, place, *bytes));
         let barrier = made
             || writes
             || loads.len() > LOADS

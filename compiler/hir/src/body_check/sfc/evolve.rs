@@ -179,13 +179,12 @@ pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, chosen: &Flags
         let group = transition.from.first().and_then(|s| groups.of(*s));
         let off = transition.from.iter().map(|s| assign(of_step(chart, *s, field::X), constant(0, BOOL, span), span));
         clear.push_flagged(group, id.index(), off.collect(), span);
-        let mut on = vec![assign(state.chosen[id].clone(), constant(0, BOOL, span), span)];
-        for step in &transition.to {
-            activate(chart, state, *step, span, &mut on);
-            groups.wake(groups.of(*step), span, &mut on);
-            on.extend(wakes[*step].iter().map(|awake| assign(awake.clone(), constant(1, BOOL, span), span)));
-        }
-        let quiet = if group.is_none() { quietly(chart, state, id, wakes) } else { Vec::new() };
+        let on = succeed(chart, state, groups, wakes, id, None);
+        // A processor cannot know which of several transitions fires. It need not, where no jump depends on it.
+        let woken: usize = transition.to.iter().map(|step| wakes[*step].len()).sum();
+        let grouped = group.is_some() || transition.to.iter().any(|step| groups.of(*step).is_some());
+        let short = !grouped && transition.to.len() <= 1 && woken <= 2;
+        let quiet = if short { succeed(chart, state, groups, wakes, id, Some(&state.chosen[id])) } else { Vec::new() };
         set.push_either(group, id.index(), on, quiet, span);
     }
     let mut body = Vec::new();
@@ -195,51 +194,55 @@ pub(super) fn fire(chart: &Chart, state: &State, groups: &Groups, chosen: &Flags
     out.push(when(read_temp(state.fires, BOOL, span), body, span));
 }
 
-/// Sets the succeeding steps of a transition if it is chosen, without a jump: a processor cannot know which of several
-/// transitions fires. Empty if that would be long.
-fn quietly(chart: &Chart, state: &State, id: TransitionId, wakes: &Wakes) -> Vec<Stmt> {
-    let transition = &chart.transitions[id];
-    let span = transition.span;
-    let woken: usize = transition.to.iter().map(|step| wakes[*step].len()).sum();
-    if transition.to.len() > 1 || woken > 2 {
-        return Vec::new();
-    }
-    let chosen = || read(state.chosen[id].clone());
-    let or = |place: Place| {
-        let value = any(&[read(place.clone()), chosen()], span);
-        assign(place, value, span)
-    };
+/// Sets the succeeding steps of a transition and takes back that it was chosen; with `only_if` without a jump, and nothing
+/// changes while that flag is FALSE.
+fn succeed(
+    chart: &Chart,
+    state: &State,
+    groups: &Groups,
+    wakes: &Wakes,
+    id: TransitionId,
+    only_if: Option<&Place>,
+) -> Vec<Stmt> {
+    let span = chart.transitions[id].span;
     let mut out = Vec::new();
-    for step in &transition.to {
-        if let Some(merged) = &state.merged {
-            let tell = [of_step(chart, *step, field::TWICE), merged.clone()];
-            let tell = tell.map(|place| assign(place, constant(1, BOOL, span), span));
-            out.push(when(all(&[chosen(), active(chart, *step)], span), tell.to_vec(), span));
-        }
-        out.push(or(of_step(chart, *step, field::X)));
-        let now = read_temp(state.now, Elem::Time, span);
-        for (part, value) in [(field::T, constant(0, Elem::Time, span)), (field::START, now)] {
-            let place = of_step(chart, *step, part);
-            let kept = vec![chosen(), read(place.clone()), value];
-            let kind = crate::body::ExprKind::Op(Op::Sel, Elem::Time, kept);
-            out.push(assign(place, Expr { kind, ty: Types::elem(Elem::Time), span }, span));
-        }
-        out.extend(wakes[*step].iter().map(|awake| or(awake.clone())));
+    for step in &chart.transitions[id].to {
+        activate(chart, state, *step, only_if, span, &mut out);
+        groups.wake(groups.of(*step), span, &mut out);
+        out.extend(wakes[*step].iter().map(|awake| raise(awake.clone(), only_if, span)));
     }
     out.push(assign(state.chosen[id].clone(), constant(0, BOOL, span), span));
     out
 }
 
 /// A step becomes active: its time starts (\[F6\]).
-fn activate(chart: &Chart, state: &State, step: StepId, span: Span, out: &mut Vec<Stmt>) {
+fn activate(chart: &Chart, state: &State, step: StepId, only_if: Option<&Place>, span: Span, out: &mut Vec<Stmt>) {
     if let Some(merged) = &state.merged {
-        let yes = || constant(1, BOOL, span);
-        let tell = vec![assign(of_step(chart, step, field::TWICE), yes(), span), assign(merged.clone(), yes(), span)];
-        out.push(when(active(chart, step), tell, span));
+        let tell = [of_step(chart, step, field::TWICE), merged.clone()];
+        let tell = tell.map(|place| assign(place, constant(1, BOOL, span), span));
+        let mut twice: Vec<Expr> = only_if.map(|flag| read(flag.clone())).into_iter().collect();
+        twice.push(active(chart, step));
+        out.push(when(all(&twice, span), tell.to_vec(), span));
     }
-    out.push(assign(of_step(chart, step, field::X), constant(1, BOOL, span), span));
-    out.push(assign(of_step(chart, step, field::T), constant(0, Elem::Time, span), span));
-    out.push(assign(of_step(chart, step, field::START), read_temp(state.now, Elem::Time, span), span));
+    out.push(raise(of_step(chart, step, field::X), only_if, span));
+    let now = read_temp(state.now, Elem::Time, span);
+    for (part, value) in [(field::T, constant(0, Elem::Time, span)), (field::START, now)] {
+        let place = of_step(chart, step, part);
+        let value = match only_if {
+            Some(flag) => operation(Op::Sel, Elem::Time, vec![read(flag.clone()), read(place.clone()), value], span),
+            None => value,
+        };
+        out.push(assign(place, value, span));
+    }
+}
+
+/// A BOOL becomes TRUE; with `only_if` if that is.
+fn raise(place: Place, only_if: Option<&Place>, span: Span) -> Stmt {
+    let value = match only_if {
+        Some(flag) => any(&[read(place.clone()), read(flag.clone())], span),
+        None => constant(1, BOOL, span),
+    };
+    assign(place, value, span)
 }
 
 /// The variables of this part.
